@@ -409,6 +409,25 @@ def test_a_program_of_a_package_that_is_not_there_is_one_of_aionode(
     assert Packages(built).command("tf2_ros", name)[2] == "aionode.rclpy"
 
 
+def test_a_program_in_cpp_that_nobody_has_built_is_one_of_aionode(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A workspace with the sources of ROS's tutorials has turtlesim, whose programs need Qt."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    for package in ("turtlesim", "joy"):
+        write(
+            tmp_path / package,
+            {
+                "package.xml": f"<package><name>{package}</name></package>",
+                "CMakeLists.txt": "add_executable(turtlesim_node turtlesim.cpp)\n",
+            },
+        )
+    own = [sys.executable, "-m", "aionode.programs", "turtlesim", "turtlesim_node"]
+
+    assert Packages(tmp_path).command("turtlesim", "turtlesim_node") == own
+    assert Packages(tmp_path).plugin("joy", "joy::Joy") == standard_plugin("joy", "joy::Joy")
+
+
 def test_an_unknown_program_of_a_package_that_is_not_there_is_named_with_those_of_aionode() -> None:
     """Nobody looks for a folder that does not exist."""
     with pytest.raises(

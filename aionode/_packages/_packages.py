@@ -72,10 +72,10 @@ class Packages:
         Raises:
             PackageNotFoundError: It is not installed.
         """
-        for prefix in prefixes():
-            if (prefix / MARKER / name).is_file():
-                return prefix
-        raise self.not_found(name)
+        prefix = installed_at(name)
+        if prefix is None:
+            raise self.not_found(name)
+        return prefix
 
     def names(self) -> list[str]:
         """Return the names of all packages."""
@@ -88,33 +88,34 @@ class Packages:
     def executables(self, name: str) -> dict[str, Executable]:
         """Return the executables of a package, by name; its source precedes installed ones.
 
-        For a ROS package that is not there, these are aionode's own versions of its programs.
+        For a ROS package that is not installed, aionode's own versions stand in for its programs:
+        for all of them if it is not there, or for those in C++ that nobody has built.
 
         Raises:
             PackageNotFoundError: There is no such package.
         """
         source = self.sources().get(name)
-        prefix = next((folder for folder in prefixes() if (folder / MARKER / name).is_file()), None)
+        prefix = installed_at(name)
         if source is None and prefix is None:
             standard = standard_executables(name)
             if standard:
                 return standard
             raise self.not_found(name, standard_packages())
-        installed = {} if prefix is None else installed_executables(prefix, name)
+        installed = (
+            standard_executables(name) if prefix is None else installed_executables(prefix, name)
+        )
         return installed | ({} if source is None else executables_in(source, name))
 
     def has(self, name: str) -> bool:
         """Return whether there is a package, in the workspace or installed."""
-        return name in self.sources() or any(
-            (folder / MARKER / name).is_file() for folder in prefixes()
-        )
+        return name in self.sources() or installed_at(name) is not None
 
     def plugin(self, package: str, name: str) -> tuple[str, str] | None:
         """Return the node class of aionode that stands in for a plugin in C++, and its node's name.
 
-        None if aionode has none, or if the package itself is there.
+        None if aionode has none, or if the package is installed.
         """
-        return None if self.has(package) else standard_plugin(package, name)
+        return None if installed_at(package) else standard_plugin(package, name)
 
     def executable(self, package: str, name: str) -> Executable:
         """Return an executable of a package.
@@ -192,6 +193,11 @@ def source_folder(workspace: Path) -> Path:
     """Return the folder of a workspace that contains the packages."""
     inner = workspace / "src"
     return inner if inner.is_dir() and not (workspace / "package.xml").is_file() else workspace
+
+
+def installed_at(name: str) -> Path | None:
+    """Return the prefix into which a package is installed, if it is."""
+    return next((folder for folder in prefixes() if (folder / MARKER / name).is_file()), None)
 
 
 def prefixes() -> list[Path]:
