@@ -474,7 +474,7 @@ def test_an_empty_file_has_no_rules(text: str) -> None:
     [
         ("a:\n  ros__parameters:\n    id:\n    x: 1\n", 3, "no value"),
         ("a:\n  b: 1\n", 2, "the value '1' before 'ros__parameters'"),
-        ("ros__parameters:\n  x: 1\n", 2, "there is not a name of a node"),
+        ("ros__parameters:\n  x: 1\n", 2, "there is no name of a node"),
         ("a:\n  ros__parameters:\n  - x: 1\n", 3, "a sequence where parameters should stand"),
         ("a:\n  ros__parameters: 5\n", 2, "the value '5' where parameters should stand"),
         ("a:\n- b\n", 2, "a sequence before 'ros__parameters'"),

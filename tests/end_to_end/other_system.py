@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import importlib
 import mmap
 import multiprocessing  # noqa: F401  # the standard library is imported before it loses anything
 import os
@@ -20,6 +21,7 @@ import socket
 import subprocess  # noqa: F401
 import sys
 import tempfile  # noqa: F401
+from contextlib import suppress
 from typing import Any, NoReturn
 
 import numpy as np  # noqa: F401  # the build for Linux looks at Linux's attributes
@@ -66,6 +68,9 @@ def no_timerfd() -> NoReturn:
 def become(system: str) -> None:
     """Take away what `system` lacks."""
     asyncio.new_event_loop().close()  # which imports the rest of asyncio
+    for name in ("textual.app", "mcp.server"):  # they ask for this system's name, which stays
+        with suppress(ImportError):
+            importlib.import_module(name)
     pair, unix = socket.socketpair, socket.AF_UNIX
     socket.socketpair = lambda *_, **__: pair(unix)  # Windows has it
     fitting = selectors.SelectSelector if system == "windows" else selectors.PollSelector

@@ -110,6 +110,6 @@ async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() 
             assert await asyncio.to_thread(process.wait, 10) == 0
             assert process.stderr is not None
             said = process.stderr.read()
-        assert "/numbers: the last" in said
-        assert "given up" in said
+        assert "/numbers: dropped the last" in said
+        assert "has read nothing for 1 s" in said
         assert len(said.splitlines()) == 1

@@ -169,7 +169,10 @@ class Motion(msgspec.Struct, frozen=True):
             case "silence":
                 wheel = msgspec.structs.replace(wheel, silence_sec=0.0)
             case "lost":
-                wheel = msgspec.structs.replace(wheel, lost_sec=0.0, continues=True)
+                accepts = wheel.accepts and not mover.way.startswith("mcp")
+                wheel = msgspec.structs.replace(
+                    wheel, lost_sec=0.0, continues=True, accepts=accepts
+                )
             case "end":
                 mover = msgspec.structs.replace(
                     mover, asks="goal left" if wheel.action else "publisher"
@@ -177,7 +180,9 @@ class Motion(msgspec.Struct, frozen=True):
             case "defaults":
                 mover = msgspec.structs.replace(mover, sends_zeros=True)
             case "gateway":
-                mover = msgspec.structs.replace(mover, client="lax")
+                # What is allowed without a lease is no `move` of an assistant.
+                way = "rosbridge" if mover.way.startswith("mcp") else mover.way
+                mover = msgspec.structs.replace(mover, client="lax", way=way)
             case "signals":
                 mover = msgspec.structs.replace(mover, old_signals=True)
         role = msgspec.structs.replace(self.mover, mover=mover)

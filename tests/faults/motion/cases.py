@@ -534,6 +534,7 @@ def assistants() -> Iterator[Motion]:
             common: dict[str, Any] = {
                 "wheel": SERVER if asks == "goal" else TOPIC,
                 "limit_s": NOTICED_S,
+                "switches": ("lost",) if asks == "goal" else ("gateway",),
             }
             drives = mover(program="page", asks=asks, way=way)
             frozen_mover = mover(program="page", asks=asks, way=way, seconds=CEILING_S)

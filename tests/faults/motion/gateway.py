@@ -147,7 +147,7 @@ class Page:
             await asyncio.sleep(self._mover.period_s)
 
     def _connect(self, *protocols: str) -> connect:
-        url = f"ws://127.0.0.1:{self._port}/?token={self._mover.client}"
+        url = f"ws://{self._mover.host}:{self._port}/?token={self._mover.client}"
         return connect(url, proxy=None, subprotocols=[*map(Subprotocol, protocols)] or None)
 
     async def _rosbridge(self) -> None:
