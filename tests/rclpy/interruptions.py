@@ -40,16 +40,19 @@ class Interrupted(Exception):  # noqa: N818  # no error of the program
 @contextmanager
 def alarms(interval_s: float, handler: Callable[[int, Any], object]) -> Iterator[None]:
     """Have a handler called again and again, each time so long after it has returned."""
+    is_over = False
 
     def call(number: int, frame: FrameType | None) -> None:
         handler(number, frame)
-        signal.setitimer(signal.ITIMER_REAL, interval_s)
+        if not is_over:
+            signal.setitimer(signal.ITIMER_REAL, interval_s)
 
     before = signal.signal(signal.SIGALRM, call)
     signal.setitimer(signal.ITIMER_REAL, interval_s)
     try:
         yield
     finally:
+        is_over = True  # first: a call that is due comes after the next line
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
 
