@@ -291,7 +291,7 @@ async def link_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
     """Read frames from a link's socket, and call a callback."""
     async with linked_pair(count) as (publisher, _):
         gid = publisher._endpoint.gid  # noqa: SLF001  # for its frames
-        (sender,) = publisher._writers[1]._send_queues  # noqa: SLF001  # its end of the link
+        (sender,) = publisher._writers[1].routes.send_queues  # noqa: SLF001  # its end of the link
         sock = sender._sock  # noqa: SLF001  # to write past it
         payload = cdr.encode(String(data=TEXT))
         # One for each message, made before they are counted.
