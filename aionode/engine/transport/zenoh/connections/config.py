@@ -14,7 +14,6 @@ import zenoh
 
 from aionode.engine.transport.network import DiscoveryRange
 from aionode.engine.transport.zenoh.connections.handlers import reason
-from aionode.engine.transport.zenoh.connections.threads import open_zenoh
 from aionode.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -129,4 +128,4 @@ def open_probe(network: Network, endpoint: str, mode: str = "client") -> zenoh.S
         "transport/unicast/open_timeout": 700,
         "transport/shared_memory/enabled": False,
     }
-    return open_zenoh(load_config(network, {}, PROBE_IDS + secrets.token_hex(12), settings))
+    return zenoh.open(load_config(network, {}, PROBE_IDS + secrets.token_hex(12), settings))

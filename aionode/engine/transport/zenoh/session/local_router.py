@@ -24,7 +24,6 @@ from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
 from aionode.engine.transport.zenoh.connections.config import LOOPBACK, load_config, open_probe
 from aionode.engine.transport.zenoh.connections.handlers import reason
-from aionode.engine.transport.zenoh.connections.threads import open_zenoh
 from aionode.engine.transport.zenoh.session.session import (
     answering_ports,
     close_session,
@@ -133,7 +132,7 @@ class LocalRouter:
             )
             config = load_config(self._network, {}, ROUTER_IDS + secrets.token_hex(12), settings)
             try:
-                router = self._router = open_zenoh(config)
+                router = self._router = zenoh.open(config)
             except zenoh.ZError as error:  # another process was faster
                 logger.debug("%s: no router was opened: %s", here, reason(error))
                 return

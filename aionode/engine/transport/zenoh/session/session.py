@@ -26,7 +26,6 @@ from aionode.engine.transport.zenoh.connections.config import (
     probed_ports,
 )
 from aionode.engine.transport.zenoh.connections.handlers import reason
-from aionode.engine.transport.zenoh.connections.threads import open_zenoh
 from aionode.engine.transport.zenoh.session.connect_slots import one_at_a_time
 from aionode.engine.transport.zenoh.session.local_sessions import announce, listed, reserve_port
 from aionode.engine.transport.zenoh.session.settings import (
@@ -287,7 +286,7 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         )
         dialled = sorted(others | (unlisted & set(network.meeting_ports)))
         settings = session_settings(network, (), Neighbours(port, tuple(dialled)))
-        session = open_zenoh(load_config(network, settings, participant))
+        session = zenoh.open(load_config(network, settings, participant))
         failed.pop_all()
     met = others & set(network.meeting_ports)
     expected = len(met) + len(unlisted) + bool(network.near_peers)
@@ -301,7 +300,7 @@ def open_unlisted(network: Network, participant: str) -> Opened:
         answering = set(answering_ports(ports))
         used, taken = meeting(network, answering) if near(network) else (network, set())
         settings = session_settings(used, taken)
-        session = open_zenoh(load_config(network, settings, participant))
+        session = zenoh.open(load_config(network, settings, participant))
     # Configured peers may be absent; one of them is waited for.
     configured = bool(network.near_peers or network.config_file)
     return Opened(session, len(answering) + configured, None)
@@ -326,7 +325,7 @@ async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zen
 
     def work() -> zenoh.Session:
         try:
-            router = open_zenoh(load_config(network, router_settings(endpoints, connect)))
+            router = zenoh.open(load_config(network, router_settings(endpoints, connect)))
         except zenoh.ZError as error:
             raise TransportError(
                 f"router on {', '.join(endpoints)}: {reason(error)}; "
