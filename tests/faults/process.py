@@ -87,7 +87,7 @@ class GivenUp(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Add the number in a warning."""
-        if "were given up" in record.msg and isinstance(record.args, tuple):
+        if "dropped the last" in record.msg and isinstance(record.args, tuple):
             self.count += int(record.args[1])  # type: ignore[call-overload]  # a number
 
 
