@@ -32,6 +32,7 @@ from tests.support.arrivals import direct_subscription, reader_of
 from tests.support.peers import contexts_over, two_contexts
 from tests.support.ros import gids_of_a_client, ros_domain, ros_missing
 from tests.support.waiting import until
+from tests.support.without_ros import without_ros
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -70,6 +71,7 @@ async def pair(
             if request.param == "fake_rcl":
                 fake_rcl.install(monkeypatch)
             else:
+                stack.enter_context(without_ros())  # another test may have installed aionode's
                 why_not = why_not or ros_missing(*getattr(request.module, "ROS_PACKAGES", ()))
             if why_not:
                 pytest.skip(why_not)
