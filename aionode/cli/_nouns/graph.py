@@ -96,7 +96,10 @@ async def draw(
     picture = picture_of(node.graph, names=names, everything=everything, hz=hz)
     if names and not picture.vertices:
         known = ", ".join(each.name for each in picture_of(node.graph).vertices[:10])
-        raise CommandError(f"nothing is called {' or '.join(names)}; there are {known}")
+        raise CommandError(
+            f"nothing is called {' or '.join(names)}; "
+            + (f"there are {known}" if known else "there is no node of others")
+        )
     if save is not None:
         save_picture(save, picture)
     if since is not None:

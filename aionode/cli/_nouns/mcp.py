@@ -194,6 +194,7 @@ async def try_tool(
     Returns:
         1 if the tool has failed, and 0 otherwise.
     """
+    made = assistant_of(node, policy, name, about, bags)  # it says which extra is missing
     import mcp
     import mcp_types
 
@@ -205,7 +206,7 @@ async def try_tool(
         output.warn(message or "")
 
     async with (
-        assistant_of(node, policy, name, about, bags) as assistant,
+        made as assistant,
         mcp.Client(assistant.server, elicitation_callback=ask) as client,
     ):
         if tool is None:
