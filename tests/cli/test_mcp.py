@@ -158,11 +158,12 @@ def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
     assert shown.stdout == "[]\n"
 
 
-def test_a_missing_extra_is_named() -> None:
+@pytest.mark.parametrize("words", [["mcp"], ["mcp", "try"], ["mcp", "try", "stop"]])
+def test_a_missing_extra_is_named(words: list[str]) -> None:
     """It is another one than that of the gateway."""
     program = (
         "import sys\nsys.modules['mcp'] = None\n"
-        "from aionode.cli import main\nsys.exit(main(['mcp']))\n"
+        f"from aionode.cli import main\nsys.exit(main({words}))\n"
     )
     shown = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False,
