@@ -9,7 +9,10 @@ from aionode.clock import perf_ns, thread_ns, thread_waited_ns
 __all__ = ["ThreadTime"]
 
 INTERVAL_NS = 5_000_000
-"""Maximum age of a reading: it costs some microseconds, too much for each callback."""
+"""Maximum age of a reading: it costs a microsecond, too much for each callback."""
+
+WAITS_INTERVAL_NS = 50_000_000
+"""Maximum age of the time for which the thread has waited: the system has it in a file."""
 
 
 class ThreadTime:
@@ -23,27 +26,33 @@ class ThreadTime:
             a call per callback would cost as much as it saves.
     """
 
-    __slots__ = ("_read_ns", "_thread", "_waited_ns", "due_ns")
+    __slots__ = ("_read_ns", "_thread", "_waited_ns", "_waits_due_ns", "due_ns")
 
     def __init__(self) -> None:
+        self._thread = 0
+        self._waits_due_ns = 0
         self.read(perf_ns())
 
     def read(self, now_ns: int) -> None:
         """Read the time of the current thread at the `perf_ns` time `now_ns`."""
-        self._thread = threading.get_ident()
+        thread = threading.get_ident()
+        if now_ns >= self._waits_due_ns or thread != self._thread:
+            self._waited_ns = thread_waited_ns()
+            self._waits_due_ns = now_ns + WAITS_INTERVAL_NS
+        self._thread = thread
         self._read_ns = thread_ns()
-        self._waited_ns = thread_waited_ns()
         self.due_ns = now_ns + INTERVAL_NS
 
     def waited_ns(self) -> int | None:
-        """Return how long the current thread was ready without a processor since the reading.
+        """Return how long the current thread was ready without a processor since it was asked last.
 
-        None if the system does not tell, or the reading was taken in another thread.
+        That was a twentieth of a second ago at most. None if the system does not tell, or the
+        reading was taken in another thread.
         """
         before_ns = self._waited_ns
         if before_ns is None or threading.get_ident() != self._thread:
             return None
-        now_ns = thread_waited_ns()
+        now_ns = self._waited_ns = thread_waited_ns()
         return None if now_ns is None else now_ns - before_ns
 
     def ran_ns(self) -> int | None:
