@@ -123,8 +123,9 @@ class LastMessages:
         Args:
             frame: What the signal interrupted.
 
-        Returns: Whether this call did so: not if another one is at it, nor if `frame` is inside a
-        publisher or transport. In that case the signal is sent again.
+        Returns:
+            Whether this call did so: not if another one is at it, nor if `frame` is inside a
+            publisher or transport. In that case the signal is sent again.
         """
         if self._has_begun:
             return False

@@ -29,7 +29,8 @@ class IntrospectedEntity(Endpoint):
 
     Args:
         subject: What it is, for errors and logs.
-        setup: What it uses of its node. srv_type: The service class.
+        setup: What it uses of its node.
+        srv_type: The service class.
         create_publisher: The node's method.
         stage: When it is destroyed as its node ends.
 

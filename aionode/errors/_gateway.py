@@ -12,13 +12,13 @@ class RefusedError(AionodeError, PermissionError):
 
     Attributes:
         subject: What the client asked for, such as ``publish to /cmd_vel``.
-        reason: Why it is refused, and what would be allowed. code: The reason as a word for
-            programs: ``not_allowed`` by the policy, ``unauthorized`` without a valid token or from
-            a page that may not connect, ``out_of_limits`` for a value outside the limits of its
-            field, ``too_large``, ``too_fast``, ``not_confirmed`` by a person, ``held`` by another
-            client that commands the topic, ``too_many`` of what is counted, ``too_old`` for a
-            command that arrived late, ``unsupported`` for a protocol that the gateway does not
-            speak.
+        reason: Why it is refused, and what would be allowed.
+        code: The reason as a word for programs: ``not_allowed`` by the policy, ``unauthorized``
+            without a valid token or from a page that may not connect, ``out_of_limits`` for a value
+            outside the limits of its field, ``too_large``, ``too_fast``, ``not_confirmed`` by a
+            person, ``held`` by another client that commands the topic, ``too_many`` of what is
+            counted, ``too_old`` for a command that arrived late, ``unsupported`` for a protocol
+            that the gateway does not speak.
     """
 
     def __init__(self, subject: str, reason: str, code: str = "not_allowed") -> None:

@@ -166,7 +166,8 @@ class System:
             kill_after_sec: Time from SIGTERM to SIGKILL, in seconds.
             options: Further options; see `MemberOptions`.
 
-        Returns: The member; the other methods take its `name`.
+        Returns:
+            The member; the other methods take its `name`.
 
         Raises:
             ValueError: the name is taken, or an argument does not fit.
@@ -227,7 +228,8 @@ class System:
             cwd: Working directory of its separate process.
             options: Further options; see `MemberOptions`.
 
-        Returns: The member; the other methods take its `name`.
+        Returns:
+            The member; the other methods take its `name`.
 
         Raises:
             InvalidNodeNameException: `name` is not a valid node name (a ValueError).

@@ -39,8 +39,10 @@ class Buffer(NodeBufferCore):
         tf_topic: The topic of changing transforms.
         tf_static_topic: The topic of static transforms.
 
-    Raises: TypeError: `cache_time` is neither a duration nor a number. ValueError: it is negative.
-    EntityDestroyedError: the node was destroyed (a RuntimeError).
+    Raises:
+        TypeError: `cache_time` is neither a duration nor a number.
+        ValueError: it is negative.
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
     # Without waiting

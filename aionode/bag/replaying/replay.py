@@ -73,8 +73,8 @@ class Replay:
 
     Attributes:
         bag: The recording.
-        clock: The clock, which shows the time of the first message until `play` is called. context:
-            The context of the nodes, without network. It is the default context meanwhile.
+        clock: The clock, which shows the time of the first message until `play` is called.
+        context: The context of the nodes, without network. It is the default context meanwhile.
     """
 
     bag: Bag

@@ -138,9 +138,10 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         Args:
             result: The result for the client; if omitted, the one that `execute_callback` returns.
 
-        Raises: GoalTransitionError: the goal is not being executed, or has ended (a RuntimeError).
-        TypeError: `result` is not of the action's Result type. MessageError: a value does not fit
-        its field.
+        Raises:
+            GoalTransitionError: the goal is not being executed, or has ended (a RuntimeError).
+            TypeError: `result` is not of the action's Result type.
+            MessageError: a value does not fit its field.
         """
         self._server._in_loop(self._end, GoalEvent.SUCCEED, result)
 

@@ -84,7 +84,8 @@ class CallbackRunner:
         callback: A function or coroutine function.
         entity: The entity.
         callbacks: How its node runs callbacks.
-        stats: Receives counts and durations. on_error: What to do with an exception: see `fail`.
+        stats: Receives counts and durations.
+        on_error: What to do with an exception: see `fail`.
         offload: Whether a sync callback runs in a thread.
 
     Raises:

@@ -22,7 +22,8 @@ class EndpointSetup(NamedTuple):
     """What an endpoint uses of its node.
 
     Attributes:
-        endpoint: The endpoint's entry in the graph. graph: The graph.
+        endpoint: The endpoint's entry in the graph.
+        graph: The graph.
         callbacks: How the node runs callbacks.
         affinity: The event loop that the node runs in.
         queue_bytes: How many bytes of messages or requests may wait for its callback.

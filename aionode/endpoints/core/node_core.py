@@ -63,8 +63,8 @@ class NodeCore:
         node_name: Its name, before it is remapped.
         namespace: Its namespace, before it is remapped.
         context: The context that it joins.
-        cli_args: Arguments for this node only. use_global_arguments: Whether those of the context
-            apply to it too.
+        cli_args: Arguments for this node only.
+        use_global_arguments: Whether those of the context apply to it too.
         callback_budget_ms: How long a callback may block the event loop.
         parameter_overrides: Values that take precedence over those of arguments.
         allow_undeclared_parameters: Whether parameters can be set without being declared.

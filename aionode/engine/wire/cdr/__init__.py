@@ -75,8 +75,9 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
 def encoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[MessageT], bytes]:
     """Return the function that encodes messages of one class, as `encode` does.
 
-    cls: An aionode message class.
-    family: The family of the messages; aionode's own by default.
+    Args:
+        cls: An aionode message class.
+        family: The family of the messages; aionode's own by default.
 
     Raises:
         TypeError: `cls` is not a message class.

@@ -53,10 +53,11 @@ class SentBy(Enum):
     """Who passes a message to Zenoh, each with a priority and so a queue of its own there.
 
     Attributes:
-        LOOP: The event loop, which never waits; Zenoh may drop the message. BULK: The thread for
-            large messages. BLOCKING: A thread of this publisher, which waits: for readers that do
-            not acknowledge and must not lose the message, or, for a transient local publisher, for
-            Zenoh, which answers a late reader with the history locked.
+        LOOP: The event loop, which never waits; Zenoh may drop the message.
+        BULK: The thread for large messages.
+        BLOCKING: A thread of this publisher, which waits: for readers that do not acknowledge and
+            must not lose the message, or, for a transient local publisher, for Zenoh, which answers
+            a late reader with the history locked.
     """
 
     LOOP = 0
