@@ -12,7 +12,8 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.engine.wire import cdr
-from aionode.gateway.session.delivery.preparing import LARGE_BYTES, MOST_BYTES, Preparing
+from aionode.gateway.session.delivery.preparing import LARGE_BYTES, Preparing
+from aionode.gateway.session.delivery.waiting import MOST_BYTES
 from aionode.gateway.session.encoding.frames import png_frame, png_frame_in_turns
 from aionode.gateway.session.encoding.large_json import SLICE_BYTES, SLICE_ITEMS, json_in_turns
 from aionode.gateway.session.encoding.values import json_of

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from aionode.gateway.session.delivery.preparing import MOST_BYTES
+from aionode.gateway.session.delivery.waiting import Waiting
 
 if TYPE_CHECKING:
     from aionode.clock import Alarm, TimeBase
@@ -37,9 +36,7 @@ class Pacing:
         self._time_base = time_base
         self._period_ns = period_ns
         self._deliver = deliver
-        self._depth = depth
-        self._waiting: deque[Received] = deque()
-        self._bytes = 0
+        self._waiting = Waiting(depth)
         self._due_ns = time_base.steady_ns()
         self._alarm: Alarm | None = None  # while messages wait
 
@@ -48,12 +45,7 @@ class Pacing:
         if self._alarm is None and self._time_base.steady_ns() >= self._due_ns:
             self._send(received)
             return
-        self._waiting.append(received)
-        self._bytes += len(received.raw)
-        while len(self._waiting) > self._depth or (
-            self._bytes > MOST_BYTES and len(self._waiting) > 1
-        ):
-            self._take()
+        self._waiting.put(received)
         self._watch()
 
     def close(self) -> None:
@@ -61,12 +53,6 @@ class Pacing:
         self._waiting.clear()
         if self._alarm is not None:
             self._alarm.cancel()
-
-    def _take(self) -> Received:
-        """Return the oldest message."""
-        received = self._waiting.popleft()
-        self._bytes -= len(received.raw)
-        return received
 
     def _send(self, received: Received) -> None:
         self._due_ns = self._time_base.steady_ns() + self._period_ns
@@ -80,5 +66,5 @@ class Pacing:
     def _ring(self) -> None:
         self._alarm = None
         if self._waiting:
-            self._send(self._take())
+            self._send(self._waiting.take())
             self._watch()

@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections import deque
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from aionode.errors import AionodeError
+from aionode.gateway.session.delivery.waiting import Waiting
 
 if TYPE_CHECKING:
     from aionode.gateway.session.feed import Received
@@ -24,9 +24,6 @@ Prepare: TypeAlias = Callable[["Received"], Awaitable[None]]
 
 LARGE_BYTES: Final = 128 << 10
 """Size up to which a message is encoded directly, in half a millisecond."""
-
-MOST_BYTES: Final = 32 << 20
-"""Messages of one subscription that may wait to be encoded; beyond it the oldest is dropped."""
 
 
 class Preparing:
@@ -59,8 +56,7 @@ class Preparing:
         self._deliver = deliver
         self._depth = depth
         self._on_drop = on_drop
-        self._waiting: deque[Received] = deque()
-        self._bytes = 0
+        self._waiting = Waiting(depth)
         self._task: asyncio.Task[None] | None = None
 
     def put(self, received: Received) -> None:
@@ -68,12 +64,7 @@ class Preparing:
         if self._task is None and len(received.raw) <= LARGE_BYTES:
             self._deliver(received)
             return
-        self._waiting.append(received)
-        self._bytes += len(received.raw)
-        while len(self._waiting) > self._depth or (
-            self._bytes > MOST_BYTES and len(self._waiting) > 1
-        ):
-            self._take()
+        for _ in range(self._waiting.put(received)):
             self.dropped += 1
             if self._depth > 1:
                 self._on_drop()
@@ -86,15 +77,9 @@ class Preparing:
         if self._task is not None:
             self._task.cancel()
 
-    def _take(self) -> Received:
-        """Return the oldest message."""
-        received = self._waiting.popleft()
-        self._bytes -= len(received.raw)
-        return received
-
     async def _run(self) -> None:
         while self._waiting:
-            received = self._take()
+            received = self._waiting.take()
             try:
                 await prepared(self._robot, self._prepare, received)
                 self._deliver(received)

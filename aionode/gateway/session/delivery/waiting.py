@@ -1,0 +1,53 @@
+"""Messages of one subscription of a client that wait, bounded in number and in bytes."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.feed import Received
+
+__all__ = ["Waiting"]
+
+MOST_BYTES: Final = 32 << 20
+"""Messages of one subscription that may wait; the oldest are dropped beyond it."""
+
+
+class Waiting:
+    """The newest messages of a subscription, oldest first.
+
+    Args:
+        depth: Maximum number of messages.
+    """
+
+    def __init__(self, depth: int) -> None:
+        self._depth = depth
+        self._messages: deque[Received] = deque()
+        self._bytes = 0
+
+    def __len__(self) -> int:
+        return len(self._messages)
+
+    def put(self, received: Received) -> int:
+        """Add a message, and return how many of the oldest were dropped for it."""
+        self._messages.append(received)
+        self._bytes += len(received.raw)
+        dropped = 0
+        while len(self._messages) > self._depth or (
+            self._bytes > MOST_BYTES and len(self._messages) > 1
+        ):
+            self.take()
+            dropped += 1
+        return dropped
+
+    def take(self) -> Received:
+        """Remove the oldest message, and return it."""
+        received = self._messages.popleft()
+        self._bytes -= len(received.raw)
+        return received
+
+    def clear(self) -> None:
+        """Forget all messages."""
+        self._messages.clear()
+        self._bytes = 0
