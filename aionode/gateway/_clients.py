@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.errors import PolicyFileError, RefusedError
+from aionode.gateway._stopping import Stopping
 from aionode.gateway.policy.identity import Identity
 from aionode.gateway.policy.policy import Policy
 from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.motions import Motions
 from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Robot
 from aionode.gateway.session.session import Session
@@ -66,15 +68,18 @@ class Clients:
 
     Attributes:
         node: The node.
+        motions: What assistants among them move.
     """
 
     def __init__(self, node: Node, policy: Policy, ask: Ask | None = None) -> None:
         self.node = node
+        self.motions = Motions()
         self._policy = policy
         self._ask = ask
         self._sessions: dict[Session, None] = {}
         self._refused = 0
         self._robot: Robot | None = None
+        self._stopping: Stopping | None = None
 
     def check_node(self) -> None:
         """Refuse to start with a node that is not running.
@@ -93,6 +98,8 @@ class Clients:
         self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
         stack.callback(self._robot.close)
         self._robot.standstills.watch(self._doubt_all)
+        self._stopping = Stopping(self._robot, self.motions, self._sessions)
+        stack.callback(self._stopping.close)
         for work in (audit.run(), self._follow_policy()):
             stack.callback(tasks.create_task(work).cancel)
         return tasks
@@ -123,6 +130,17 @@ class Clients:
         if self._robot is None:
             raise RuntimeError("gateway: use `async with Gateway(...)`")
         return self._robot
+
+    @property
+    def stopping(self) -> Stopping:
+        """Ends motion.
+
+        Raises:
+            RuntimeError: the gateway was not entered.
+        """
+        if self._stopping is None:
+            raise RuntimeError("gateway: use `async with Gateway(...)`")
+        return self._stopping
 
     @property
     def sessions(self) -> list[Session]:
@@ -223,7 +241,7 @@ class Clients:
             sent,
             dropped,
             {feed.topic: feed.received for feed in robot.feeds},
-            {topic: identity.name for topic, identity in robot.commands.holders().items()},
+            {topic: holder.identity.name for topic, holder in robot.commands.holders().items()},
             robot.audit.lost,
         )
 

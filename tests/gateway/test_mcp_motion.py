@@ -11,7 +11,10 @@ import httpx
 import mcp
 import pytest
 
-from aionode.gateway import Gateway
+from aionode.gateway import Assistant, Gateway, Policy, _stopping
+from aionode.gateway._stopping import StopMotion
+from aionode.node import Node
+from aionode.testing import settle
 from tests.support.mcp_bench import POLICY, Bench, bench_of
 from tests.support.waiting import until
 
@@ -231,6 +234,80 @@ async def connect(bench: Bench, tasks: asyncio.TaskGroup, transport: Any) -> Any
 
     tasks.create_task(stay())
     return await connected
+
+
+@pytest.mark.parametrize("what", ["move", "goal"])
+async def test_stop_reaches_what_the_client_moves_through_another_gateway(
+    assisted: Bench, era: str, what: str
+) -> None:
+    """Two programs that each start their own `aionode mcp` are one identity, and so is a page."""
+    async with another_assistant(assisted) as other:
+        client = await assisted.connect(era)
+        async with mcp.Client(other.server) as second, asyncio.TaskGroup() as tasks:
+            calling = tasks.create_task(second.call_tool(*MOVING[what]))
+            await until(lambda: is_under_way(assisted, what))
+            stopped = await client.call_tool("stop", {})
+
+    assert calling.result().structured_content["outcome"].endswith("by stop of model")
+    name = "/cmd_vel" if what == "move" else "/count"
+    assert stopped.structured_content == {"ended": [f"{name} (model)"], "still_moving": []}
+
+
+async def test_what_others_move_through_another_gateway_ends_by_its_policys_word(
+    assisted: Bench,
+) -> None:
+    """The policy that let them move says who may end it."""
+    driver = POLICY.replace('name = "model"', 'name = "driver"')
+    async with another_assistant(assisted, driver) as other:
+        client = await assisted.connect()
+        async with mcp.Client(other.server) as second, asyncio.TaskGroup() as tasks:
+            calling = tasks.create_task(second.call_tool(*MOVE))
+            await until(lambda: is_under_way(assisted, "move"))
+
+            stopped = await client.call_tool("stop", {})
+            assert stopped.structured_content == {
+                "ended": [], "still_moving": [{"name": "/cmd_vel", "who": "driver"}],
+            }  # fmt: skip
+            assert not calling.done()
+
+            word = '[[who]]\nname = "model"\ntoken = "t"\n[[allow]]\nwho = "model"\nstop = "/**"\n'
+            other.clients.use_policy(Policy.parse(driver + word))
+            stopped = await client.call_tool("stop", {})
+            assert stopped.structured_content == {
+                "ended": ["/cmd_vel (driver)"], "still_moving": [],
+            }  # fmt: skip
+
+
+async def test_a_gateway_that_does_not_answer_is_named(
+    assisted: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What it moves goes on, and the rest was stopped."""
+    monkeypatch.setattr(_stopping, "ANSWER_SEC", 0.1)
+    assisted.base.create_service(StopMotion, "/frozen/_stop", never)
+    await settle()
+    client = await assisted.connect()
+
+    stopped = await client.call_tool("stop", {})
+
+    assert stopped.structured_content == {
+        "ended": [], "still_moving": [{"name": "unknown", "who": "/base does not answer"}],
+    }  # fmt: skip
+
+
+async def never(_request: Any, _response: Any) -> Any:
+    """Answer no request."""
+    await asyncio.Event().wait()
+
+
+@asynccontextmanager
+async def another_assistant(bench: Bench, policy: str = POLICY) -> AsyncIterator[Assistant]:
+    """Yield the assistant of another program for the same robot."""
+    async with (
+        Node("another", context=bench.base.context) as node,
+        Assistant(node, Policy.parse(policy)) as assistant,
+    ):
+        await settle()
+        yield assistant
 
 
 async def test_one_mover_at_a_time(assisted: Bench, era: str) -> None:

@@ -81,9 +81,9 @@ class Assistant:
         """
         if not self._name:
             return self.clients.policy.identify(LOOPBACK)
-        for who in self.clients.policy.who:
-            if who.name == self._name:
-                return Identity(who.name, frozenset(who.groups), LOOPBACK.address)
+        identity = self.clients.policy.named(self._name, LOOPBACK.address)
+        if identity is not None:
+            return identity
         known = ", ".join(who.name for who in self.clients.policy.who) or "none"
         raise ConfigurationError(
             "assistant's name", self._name, f"no [[who]] of the policy has it; there is {known}"

@@ -16,8 +16,8 @@ from aionode.fastapi import watching
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients
-    from aionode.gateway.mcp.motions import Motion, Motions
     from aionode.gateway.policy.policy import Verb
+    from aionode.gateway.session.motions import Motion
     from aionode.gateway.session.session import Session
 
 __all__ = ["Call", "ClientGoneError", "while_client_is_there"]
@@ -40,19 +40,16 @@ class Call:
         session: The session of the call, whose end gives back all that it has taken.
         context: That of the request.
         clients: All clients of the robot.
-        motions: What assistants move.
 
     Attributes:
         session: The session.
         clients: All clients of the robot.
-        motions: What assistants move.
         outcome: What became of it, for the audit log.
     """
 
-    def __init__(self, session: Session, context: Any, clients: Clients, motions: Motions) -> None:
+    def __init__(self, session: Session, context: Any, clients: Clients) -> None:
         self.session = session
         self.clients = clients
-        self.motions = motions
         self.outcome = "cancelled"
         self._context = context
         self._reported_ns = -S_TO_NS
@@ -61,7 +58,7 @@ class Call:
     @contextmanager
     def moving(self, verb: Verb, name: str, type_name: str) -> Iterator[Motion]:
         """Move something within the block; see `Motions.moving`."""
-        with self.motions.moving(self.session, verb, name, type_name) as motion:
+        with self.clients.motions.moving(self.session, verb, name, type_name) as motion:
             try:
                 yield motion
             except asyncio.CancelledError:

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from msgspec import Meta, field
 
-from aionode.errors import AionodeError, RefusedError, ToolError
+from aionode.errors import RefusedError, ToolError
+from aionode.gateway._stopping import cancelled
 from aionode.gateway.mcp.answers import answer
 from aionode.gateway.mcp.arguments import Arguments, Nothing
 from aionode.gateway.mcp.names import topic_of
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
     import mcp_types as types
 
     from aionode.gateway.mcp.call import Call
-    from aionode.gateway.mcp.motions import Motion
     from aionode.gateway.policy.policy import Decision, LeaseRule
     from aionode.gateway.session.command import Holder
+    from aionode.gateway.session.motions import Motion
     from aionode.gateway.session.session import Session
 
 __all__ = ["CallService", "Do", "Move", "Publish", "SetParameter", "call_service", "do"]
@@ -36,9 +37,6 @@ RATE_HZ: Final = 20.0
 
 LISTENERS_SEC: Final = 1.0
 """The longest wait for a subscription that the graph shows to be matched, in seconds."""
-
-ENDING_SEC: Final = 1.0
-"""The longest time for motion to end that was stopped, in seconds."""
 
 LONG: Final = 4000
 
@@ -307,15 +305,6 @@ async def run_goal(
     return answer(values, is_error=is_error)
 
 
-async def cancelled(handle: Any) -> Any:
-    """Cancel a goal, and return how it has ended; None if it has not within a second."""
-    with suppress(TimeoutError, AionodeError):
-        async with asyncio.timeout(ENDING_SEC):
-            await handle.cancel()
-            return await handle.result()
-    return None
-
-
 def ended(
     call: Call, motion: Motion, action: str, feedback: Any, result: Any
 ) -> tuple[dict[str, Any], bool]:
@@ -370,57 +359,8 @@ async def set_parameter(call: Call, given: SetParameter) -> types.CallToolResult
 
 async def stop(call: Call, _given: Nothing) -> types.CallToolResult:
     """End what the client moves, and what others move as far as the policy says so."""
-    session = call.session
-    own = session.identity.name
-    ended: list[str] = []
-    ending: list[Motion] = []
-    for motion in call.motions:
-        if may_stop(session, motion, motion.name, motion.type_name):
-            motion.end(by=f"stop of {own}")
-            ending.append(motion)
-            ended.append(f"{motion.name} ({motion.identity.name})")
-    with suppress(TimeoutError):
-        async with asyncio.timeout(ENDING_SEC):
-            for motion in ending:
-                await motion.ended.wait()
-    ended += await end_others(call)
-    moving = still_moving(call)
+    stopped = await call.clients.stopping.everywhere(call.session.rights)
+    ended = sorted(f"{name} ({who})" for name, who in stopped.ended)
+    moving = [{"name": name, "who": who} for name, who in sorted(stopped.moving)]
     call.outcome = f"ended {len(ended)}, {len(moving)} go on"
-    return answer({"ended": sorted(set(ended)), "still_moving": moving})
-
-
-def may_stop(session: Session, owner: Any, name: str, type_name: str) -> bool:
-    """Return whether a client may end what another one moves: its own, or by the policy's word."""
-    if owner.identity.name == session.identity.name:
-        return True
-    return session.rights.decision("stop", name, type_name).allowed
-
-
-async def end_others(call: Call) -> list[str]:
-    """End leases and goals of clients by other ways in, and return what they moved."""
-    session, robot, ended = call.session, call.clients.robot, []
-    for topic in list(robot.commands.holders()):
-        holder = robot.commands.holder(topic)
-        types = session.graph.types_of(topic, "topic")
-        if holder is not None and may_stop(session, holder, topic, types[0] if types else ""):
-            ended.append(f"{topic} ({holder.identity.name})")
-            await robot.commands.leave(holder.owner, topic)
-    for other in call.clients.sessions:
-        for handle, (action, type_name) in list(other.goals.items()):
-            if may_stop(session, other, action, type_name):
-                ended.append(f"{action} ({other.identity.name})")
-                await cancelled(handle)
-    return ended
-
-
-def still_moving(call: Call) -> list[dict[str, str]]:
-    """Return who moves what now, as far as the gateway knows."""
-    holders = call.clients.robot.commands.holders()
-    moving = [{"name": topic, "who": identity.name} for topic, identity in holders.items()]
-    moving += [
-        {"name": action, "who": other.identity.name}
-        for other in call.clients.sessions
-        for handle, (action, _) in other.goals.items()
-        if not handle.done
-    ]
-    return moving
+    return answer({"ended": ended, "still_moving": moving})

@@ -17,7 +17,6 @@ from aionode.gateway.mcp.answers import failure
 from aionode.gateway.mcp.call import Call, while_client_is_there
 from aionode.gateway.mcp.confirming import Asker, Question, Questions
 from aionode.gateway.mcp.events import EVENTS, Events
-from aionode.gateway.mcp.motions import Motions
 from aionode.gateway.mcp.resources import (
     PROMPT,
     how_to_move,
@@ -79,14 +78,12 @@ class McpServer:
 
     Attributes:
         server: The server of the SDK.
-        motions: What its clients move.
         events: What has happened to the robot.
     """
 
     def __init__(
         self, clients: Clients, identity: Callable[[], Identity], about: str = "", bags: str = ""
     ) -> None:
-        self.motions = Motions()
         self.events = Events(clients)
         self._clients = clients
         self._identity = identity
@@ -195,7 +192,7 @@ class McpServer:
     ) -> types.CallToolResult | types.InputRequiredResult:
         """Run a tool in a session, and write it down."""
         arguments = params.arguments or {}
-        call = Call(session, context, self._clients, self.motions)
+        call = Call(session, context, self._clients)
         own = self._clients.robot.ask
         if own is not None or Asker.can_ask(context):
             session.rights.ask = Asker(context, params, self._questions, own)

@@ -518,6 +518,13 @@ class Policy(Part, frozen=True):
         client = fitting[0]
         return Identity(client.name, frozenset(client.groups), credentials.address)
 
+    def named(self, name: str, address: str = "") -> Identity | None:
+        """Return the client of a name, with its groups; None if no ``[[who]]`` has the name."""
+        for who in self.who:
+            if who.name == name:
+                return Identity(name, frozenset(who.groups), address)
+        return None
+
     def decide(
         self,
         identity: Identity,

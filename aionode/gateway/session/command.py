@@ -38,12 +38,14 @@ class Holder:
         owner: The session of the client, or something that its requests share.
         identity: Who it is.
         rule: How it publishes.
+        type_name: The name of the topic's type.
     """
 
-    def __init__(self, owner: Owner, identity: Identity, rule: LeaseRule) -> None:
+    def __init__(self, owner: Owner, identity: Identity, rule: LeaseRule, type_name: str) -> None:
         self.owner = owner
         self.identity = identity
         self.rule = rule
+        self.type_name = type_name
         self.lease: CommandLease[Any] | None = None
         self.entered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self.leaving = asyncio.Event()
@@ -69,9 +71,9 @@ class Commands:
         """Return who commands a topic now."""
         return self._holders.get(topic)
 
-    def holders(self) -> dict[str, Identity]:
+    def holders(self) -> dict[str, Holder]:
         """Return who commands which topic now."""
-        return {topic: holder.identity for topic, holder in self._holders.items()}
+        return dict(self._holders)
 
     def refuse_if_held(self, topic: str, owner: object) -> None:
         """Refuse to publish on a topic that another client commands.
@@ -109,7 +111,8 @@ class Commands:
             holder = self._holders.get(topic)
         if holder is None:
             refuse_without_stop(topic, publisher.msg_type, rule)
-            holder = self._holders[topic] = Holder(owner, identity, rule)
+            holder = Holder(owner, identity, rule, type_name(publisher.msg_type))
+            self._holders[topic] = holder
             self._tasks.create_task(self._hold(topic, publisher, holder))
         await asyncio.shield(holder.entered)
         try:

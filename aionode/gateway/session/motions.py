@@ -1,4 +1,4 @@
-"""What assistants move now, so that `stop` can end it."""
+"""The motions of assistants that are under way, so that `stop` can end them."""
 
 from __future__ import annotations
 

@@ -1,0 +1,204 @@
+"""The end of motion: of the clients of this gateway, and of those of others in the domain."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from aionode.errors import AionodeError
+from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.rights import Rights
+from aionode.graph import EndpointKind
+from aionode.message import DEFAULT, Message, Sequence, ServiceType
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from aionode.gateway.session.motions import Motions
+    from aionode.gateway.session.robot import Robot
+    from aionode.gateway.session.session import Session
+    from aionode.graph import EndpointInfo
+
+__all__ = ["Moving", "StopMotion", "Stopped", "Stopping", "cancelled"]
+
+ENDING_SEC: Final = 1.0
+"""The longest time for motion to end that was stopped, in seconds."""
+
+ANSWER_SEC: Final = 2 * ENDING_SEC
+"""The longest wait for another gateway, in seconds."""
+
+MOST_GATEWAYS: Final = 100
+
+MOST_NAME: Final = 200
+"""The longest name of a client that is looked for, in characters."""
+
+
+class StopMotion(ServiceType, typename="aionode_gateway/srv/StopMotion"):
+    """A request to a gateway of the same domain to end what a client moves.
+
+    Everyone in the domain can publish commands, so everyone may ask for their end.
+    """
+
+    class Request(Message):
+        """The name of the client, by the policy."""
+
+        identity: str = ""
+
+    class Response(Message):
+        """What was ended, and what still moves, with the names of the clients that move it."""
+
+        ended: Sequence[str] = DEFAULT
+        ended_of: Sequence[str] = DEFAULT
+        moving: Sequence[str] = DEFAULT
+        moving_of: Sequence[str] = DEFAULT
+
+
+class Moving(NamedTuple):
+    """A topic or an action, and the name of the client that moves something by it."""
+
+    name: str
+    who: str
+
+
+class Stopped(NamedTuple):
+    """What was ended, and what still moves."""
+
+    ended: set[Moving]
+    moving: set[Moving]
+
+
+class Stopping:
+    """Ends motion: leases, goals and calls of assistants.
+
+    Each gateway and assistant of a domain offers this as a hidden service, so that `stop` reaches
+    what the same client moves through another one.
+
+    Args:
+        robot: The robot, as the clients of this gateway share it.
+        motions: What assistants among them move.
+        sessions: The sessions of all of them, which change.
+    """
+
+    def __init__(self, robot: Robot, motions: Motions, sessions: Collection[Session]) -> None:
+        self._robot = robot
+        self._motions = motions
+        self._sessions = sessions
+        self._node = robot.node
+        self._service = self._node.create_service(
+            StopMotion, f"~/_stop_{secrets.token_hex(8)}", self._serve, concurrent=True
+        )
+
+    def close(self) -> None:
+        """Offer it no longer."""
+        self._service.destroy()
+
+    async def everywhere(self, rights: Rights) -> Stopped:
+        """End what a client moves in the whole domain, and what others move as far as it may.
+
+        A gateway that does not answer in time is named among what still moves.
+        """
+        others = [
+            endpoint
+            for endpoint in self._node.graph.endpoints(EndpointKind.SERVER)
+            if endpoint.type_name == StopMotion.__ros_type__
+            and endpoint.name != self._service.srv_name
+        ]
+        answers = await asyncio.gather(
+            self.here(rights), *(self._ask(each, rights) for each in others[:MOST_GATEWAYS])
+        )
+        return Stopped(
+            set().union(*(each.ended for each in answers)),
+            set().union(*(each.moving for each in answers)),
+        )
+
+    async def here(self, rights: Rights) -> Stopped:
+        """End what a client moves by this gateway, and what others move as far as it may."""
+        ended: set[Moving] = set()
+
+        def may_end(name: str, type_name: str, owner: Identity) -> bool:
+            """Return whether it may: its own motion, or by the policy's word; and note it."""
+            own = owner.name == rights.identity.name
+            allowed = own or rights.decision("stop", name, type_name).allowed
+            if allowed:
+                ended.add(Moving(name, owner.name))
+            return allowed
+
+        commands, by = self._robot.commands, f"stop of {rights.identity.name}"
+        ending = [
+            motion for motion in self._motions
+            if may_end(motion.name, motion.type_name, motion.identity)
+        ]  # fmt: skip
+        for motion in ending:
+            motion.end(by=by)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(ENDING_SEC):
+                for motion in ending:
+                    await motion.ended.wait()
+        for topic, holder in commands.holders().items():
+            if may_end(topic, holder.type_name, holder.identity):
+                await commands.leave(holder.owner, topic)
+        goals = [
+            handle
+            for session in self._sessions
+            for handle, (action, type_name) in session.goals.items()
+            if may_end(action, type_name, session.identity)
+        ]
+        await asyncio.gather(*map(cancelled, goals))
+        return Stopped(ended, self._moving())
+
+    def _moving(self) -> set[Moving]:
+        """Return what clients of this gateway move now."""
+        holders = self._robot.commands.holders()
+        moving = {Moving(topic, holder.identity.name) for topic, holder in holders.items()}
+        return moving | {
+            Moving(action, session.identity.name)
+            for session in list(self._sessions)
+            for handle, (action, _) in session.goals.items()
+            if not handle.done
+        }
+
+    async def _ask(self, other: EndpointInfo, rights: Rights) -> Stopped:
+        """Have another gateway end it."""
+        client = self._node.create_client(StopMotion, other.name)
+        try:
+            request = StopMotion.Request(identity=rights.identity.name)
+            response = await client.call(request, timeout_sec=ANSWER_SEC)
+        except (AionodeError, TimeoutError):
+            if other not in self._node.graph.endpoints(EndpointKind.SERVER, name=other.name):
+                return Stopped(set(), set())  # it has ended meanwhile
+            node = other.node.fully_qualified_name
+            return Stopped(set(), {Moving("unknown", f"{node} does not answer")})
+        finally:
+            client.destroy()
+        return Stopped(
+            {Moving(*each) for each in zip(response.ended, response.ended_of, strict=False)},
+            {Moving(*each) for each in zip(response.moving, response.moving_of, strict=False)},
+        )
+
+    async def _serve(
+        self, request: StopMotion.Request, response: StopMotion.Response
+    ) -> StopMotion.Response:
+        """End what a client of another gateway moves by this one."""
+        name = request.identity[:MOST_NAME]
+        identity = self._robot.policy.named(name) or Identity(name)
+        stopped = await self.here(Rights(self._robot, identity, "stop"))
+        for name, who in stopped.ended:
+            self._robot.audit.note(
+                identity, "stop", name, result=f"of {who}", way="another gateway"
+            )
+        response.ended = [name for name, _ in stopped.ended]
+        response.ended_of = [who for _, who in stopped.ended]
+        response.moving = [name for name, _ in stopped.moving]
+        response.moving_of = [who for _, who in stopped.moving]
+        return response
+
+
+async def cancelled(handle: Any) -> Any:
+    """Cancel a goal, and return how it has ended; None if it has not within a second."""
+    with suppress(TimeoutError, AionodeError):
+        async with asyncio.timeout(ENDING_SEC):
+            await handle.cancel()
+            return await handle.result()
+    return None
