@@ -200,7 +200,7 @@ def checked_stem(file: Path) -> str:
 def make_importable(package: str, loaded: Interfaces) -> None:
     """Make a loaded package importable, unless aionode ships that package in that release."""
     name = f"aionode.interfaces.{package}"
-    if package in aionode.interfaces.shipped_packages() - aionode.interfaces.VERSIONED:
+    if package in aionode.interfaces.OF_ROS:
         return
     module = getattr(loaded, package)
     module.__name__ = name

@@ -25,12 +25,17 @@ def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
     renamed = sorted(name for name in names if " as " in name)
     usual = sorted(set(names) - set(renamed), key=lambda name: import_order(name, ignore_case=True))
     statements = [[name] for name in renamed] + [usual] * bool(usual)
-    for imported in sorted(statements, key=lambda each: import_order(each[0], ignore_case=True)):
+    for imported in sorted(statements, key=first_of):
         line = f"from {module} import {', '.join(imported)}"
         if len(line) <= WIDTH:
             yield line
         else:
             yield from wrapped(f"from {module} import (", imported, ")")
+
+
+def first_of(imported: list[str]) -> tuple[int, list[str | int]]:
+    """Return isort's sort key for an import, by the name that its first one has in its module."""
+    return import_order(imported[0].partition(" as ")[0], ignore_case=True)
 
 
 def import_order(name: str, *, ignore_case: bool = False) -> tuple[int, list[str | int]]:

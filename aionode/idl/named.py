@@ -22,7 +22,7 @@ from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
 from aionode.idl._folder import FileTexts, checked_stem, package_of
-from aionode.interfaces import VERSIONED, shipped_packages
+from aionode.interfaces import OF_ROS
 from aionode.message import Interface
 
 __all__ = [
@@ -110,8 +110,7 @@ class NamedBuilder(Builder):
     def existing(self, typename: str, built: type[Interface]) -> type[Interface] | None:
         """Return the shipped class of this name, if its definition is the same."""
         package = split_type_name(typename)[0]
-        is_shipped = package in shipped_packages() and package not in VERSIONED
-        return existing(typename, built) if is_shipped else None
+        return existing(typename, built) if package in OF_ROS else None
 
 
 def add_definitions(folder: Path, known: dict[str, Path]) -> None:

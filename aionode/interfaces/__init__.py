@@ -10,7 +10,8 @@ Packages with definitions of their own can be imported here as well, without a b
 and in the workspace around the program: the folder ``src``, or else the repository, that it is in.
 
 Types that the sourced ROS 2 defines differently are its own. ``ROS_DISTRO`` alone brings the known
-differences. Of the shipped packages in `VERSIONED`, those of a folder or of the workspace come first.
+differences. Of the shipped packages that are not in `OF_ROS`, those of a folder or of the workspace
+come first.
 """
 
 from __future__ import annotations
@@ -273,28 +274,38 @@ FIXED = frozenset(
 )
 """Packages that every node needs, whose definitions are the same in all distributions."""
 
-VERSIONED = frozenset(
+OF_ROS = frozenset(
     {
-        "ackermann_msgs",
-        "control_msgs",
-        "controller_manager_msgs",
-        "dwb_msgs",
-        "geographic_msgs",
-        "irobot_create_msgs",
-        "mavros_msgs",
-        "moveit_msgs",
-        "nav2_msgs",
-        "nav_2d_msgs",
-        "object_recognition_msgs",
-        "octomap_msgs",
-        "px4_msgs",
-        "rosapi_msgs",
-        "rosbridge_msgs",
-        "tf2_web_republisher_interfaces",
-        "vision_msgs",
+        "action_msgs",
+        "action_tutorials_interfaces",
+        "actionlib_msgs",
+        "builtin_interfaces",
+        "composition_interfaces",
+        "diagnostic_msgs",
+        "example_interfaces",
+        "geometry_msgs",
+        "lifecycle_msgs",
+        "nav_msgs",
+        "rcl_interfaces",
+        "rosbag2_interfaces",
+        "rosgraph_msgs",
+        "sensor_msgs",
+        "service_msgs",
+        "shape_msgs",
+        "statistics_msgs",
+        "std_msgs",
+        "std_srvs",
+        "stereo_msgs",
+        "test_msgs",
+        "tf2_msgs",
+        "trajectory_msgs",
+        "turtlesim",
+        "type_description_interfaces",
+        "unique_identifier_msgs",
+        "visualization_msgs",
     }
 )
-"""Shipped packages with releases of their own, one of which a robot has among its sources."""
+"""Shipped packages that ROS 2 itself releases; a robot has a release of the others of its own."""
 
 
 def is_sourced() -> bool:
@@ -315,7 +326,7 @@ class DefinitionFinder(MetaPathFinder):
         package, _, kind = fullname.removeprefix(f"{__name__}.").partition(".")
         if not fullname.startswith(f"{__name__}.") or package in FIXED:
             return None
-        if package not in shipped_packages() or (package in VERSIONED and has_sources(package)):
+        if package not in OF_ROS and (package not in shipped_packages() or has_sources(package)):
             return found_elsewhere(fullname, package, kind)
         if not is_sourced():
             return None

@@ -19,14 +19,8 @@ from aionode.message import constants, fields
 from tests.support.without_ros import without_ros
 
 ROOT = Path(aionode.interfaces.__file__).parents[2]
-OWN_DEFINITIONS = (
-    "ackermann_msgs",
-    "geographic_msgs",
-    "rosbag2_interfaces",  # with the events that are new in Lyrical
-    "turtlesim",
-    "vision_msgs",
-)
-"""Packages whose definitions do not come from the folder beside the repository."""
+NEWER = {"rosbag2_interfaces"}
+"""Packages of the folder beside the repository that aionode has with what Lyrical adds."""
 
 SOURCE = ROOT.parent / "shared" / "interfaces"
 """The definitions that the shipped interfaces are generated from, not in the repository."""
@@ -195,23 +189,25 @@ def test_the_shipped_modules_are_what_the_generator_writes(tmp_path: Path) -> No
     (tmp_path / "aionode" / "__init__.py").touch()
 
     definitions = tmp_path / "definitions"
-    for package in shipped_packages():  # the folder has more
-        if (SOURCE / package).is_dir():
-            shutil.copytree(SOURCE / package, definitions / package, copy_function=shutil.copyfile)
+    packages = shipped_packages()
+    beside = {name for name in packages - NEWER if (SOURCE / name).is_dir()}  # the folder has more
+    for package in beside:
+        shutil.copytree(SOURCE / package, definitions / package, copy_function=shutil.copyfile)
     for name, (before, constants_) in LATER_CONSTANTS.items():
         file = definitions / name
         file.write_text(file.read_text().replace(before, constants_ + before, 1))
 
-    for package in OWN_DEFINITIONS:
-        shutil.rmtree(definitions / package, ignore_errors=True)
     own = tmp_path / "own"
-    for name in [name for package in OWN_DEFINITIONS for name in interface_names(package)]:
+    others = packages - beside
+    for name in [name for package in others for name in interface_names(package)]:
         file = own.joinpath(*name.split("/")).with_suffix(f".{name.split('/')[1]}")
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(definition_text(get_interface(name)))
 
-    written = [*generate(definitions, copy), *generate(own, copy)]
+    written = generate(definitions, copy)
+    for package in others:
+        written += generate(own / package, copy)
 
-    assert {file.parent.name for file in written} == shipped_packages()
+    assert {file.parent.name for file in written} == packages
     for file in written:
         assert file.read_text() == (shipped / file.relative_to(copy)).read_text(), file

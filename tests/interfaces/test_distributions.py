@@ -21,7 +21,7 @@ from aionode.idl import define
 from aionode.idl._build import Builder
 from aionode.idl._distribution_differences import differences
 from aionode.idl._parser import parse
-from aionode.interfaces import VERSIONED, get_interface, get_message
+from aionode.interfaces import OF_ROS, get_interface, get_message
 from aionode.message import FieldType, fields, type_name
 from tests.support.strategies import shipped_types
 
@@ -65,8 +65,8 @@ MISSING: dict[str, set[str]] = {
         "geometry_msgs/msg/Pose2D",
     },
 }
-ELSEWHERE = {*VERSIONED, "example_interfaces", "test_msgs", "turtlesim"}
-"""Packages that rosbags does not carry."""
+CARRIED = OF_ROS - {"example_interfaces", "test_msgs", "turtlesim"}
+"""The packages of ROS that rosbags has."""
 
 
 VECTORS = Path(__file__).parents[1] / "vectors" / "interface_hashes.json"
@@ -102,7 +102,7 @@ def described(name: str) -> list[tuple[str, str]]:
 def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distribution: str) -> None:
     """An independent source: other people's copy of ROS's definitions."""
     known = get_typestore(Stores[distribution]).fielddefs
-    names = [n for n in shipped_types() if "/msg/" in n and n.split("/")[0] not in ELSEWHERE]
+    names = [n for n in shipped_types() if "/msg/" in n and n.split("/")[0] in CARRIED]
     missing = {name for name in names if name not in known}
     differing = set()
     for name in set(names) - missing:

@@ -1,0 +1,1 @@
+"""Interfaces of apriltag_msgs: tags of AprilTag that were found in images."""

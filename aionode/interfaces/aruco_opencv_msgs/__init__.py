@@ -1,0 +1,1 @@
+"""Interfaces of aruco_opencv_msgs: markers of ArUco that were found in images."""

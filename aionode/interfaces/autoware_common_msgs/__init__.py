@@ -1,0 +1,1 @@
+"""Interfaces of autoware_common_msgs: how a request to Autoware ended."""

@@ -1,0 +1,1 @@
+"""Interfaces of autoware_map_msgs: maps of lanes and of point clouds."""

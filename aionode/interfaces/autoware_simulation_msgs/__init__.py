@@ -1,0 +1,1 @@
+"""Interfaces of autoware_simulation_msgs: what is simulated, and how."""

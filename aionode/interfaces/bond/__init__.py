@@ -1,0 +1,1 @@
+"""Interfaces of bond: two processes that watch whether the other one lives."""

@@ -1,0 +1,1 @@
+"""Interfaces of can_msgs: frames of a CAN bus."""

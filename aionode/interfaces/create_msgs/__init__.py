@@ -1,0 +1,1 @@
+"""Interfaces of create_msgs: sensors and sounds of the Create 1 and 2 and of the Roomba."""

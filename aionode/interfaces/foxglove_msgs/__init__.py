@@ -1,0 +1,1 @@
+"""Interfaces of foxglove_msgs: what Foxglove draws."""

@@ -1,0 +1,1 @@
+"""Interfaces of gazebo_msgs: models, links and joints of Gazebo Classic."""

@@ -1,0 +1,1 @@
+"""Interfaces of gps_msgs: fixes and satellites of receivers, with all that gpsd knows."""

@@ -1,0 +1,1 @@
+"""Interfaces of grid_map_msgs: maps in cells with several layers."""

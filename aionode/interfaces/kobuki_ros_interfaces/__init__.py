@@ -1,0 +1,1 @@
+"""Interfaces of kobuki_ros_interfaces: bumpers, buttons, docking and sounds of the base Kobuki."""

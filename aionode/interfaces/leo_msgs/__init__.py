@@ -1,0 +1,1 @@
+"""Interfaces of leo_msgs: wheels, encoders and the IMU of the Leo Rover."""

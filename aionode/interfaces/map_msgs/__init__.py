@@ -1,0 +1,1 @@
+"""Interfaces of map_msgs: parts of maps, and maps of points."""

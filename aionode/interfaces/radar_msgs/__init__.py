@@ -1,0 +1,1 @@
+"""Interfaces of radar_msgs: returns and tracks of radars."""

@@ -1,0 +1,1 @@
+"""Interfaces of rai_interfaces: what the embodied agents of RAI exchange."""

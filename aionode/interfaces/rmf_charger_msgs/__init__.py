@@ -1,0 +1,1 @@
+"""Interfaces of rmf_charger_msgs: chargers and requests to them."""

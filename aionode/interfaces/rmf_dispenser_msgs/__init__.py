@@ -1,0 +1,1 @@
+"""Interfaces of rmf_dispenser_msgs: dispensers that put items onto robots."""

@@ -1,0 +1,1 @@
+"""Interfaces of rmf_door_msgs: doors, and requests to open them."""

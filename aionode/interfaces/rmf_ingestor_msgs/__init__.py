@@ -1,0 +1,1 @@
+"""Interfaces of rmf_ingestor_msgs: ingestors that take items from robots."""

@@ -1,0 +1,1 @@
+"""Interfaces of rmf_lift_msgs: lifts, and requests to them."""

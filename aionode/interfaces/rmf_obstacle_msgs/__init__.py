@@ -1,0 +1,1 @@
+"""Interfaces of rmf_obstacle_msgs: obstacles in a building."""

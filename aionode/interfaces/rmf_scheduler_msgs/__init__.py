@@ -1,0 +1,1 @@
+"""Interfaces of rmf_scheduler_msgs: schedules, and what they start."""

@@ -1,0 +1,1 @@
+"""Interfaces of rmf_task_msgs: tasks of fleets: requests, bids, dispatch and states."""

@@ -1,0 +1,1 @@
+"""Interfaces of rmf_traffic_msgs: itineraries of robots, and how their conflicts are negotiated."""

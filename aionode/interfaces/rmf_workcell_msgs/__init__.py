@@ -1,0 +1,1 @@
+"""Interfaces of rmf_workcell_msgs: work cells, and requests to them."""

@@ -1,0 +1,1 @@
+"""Interfaces of rtcm_msgs: corrections for receivers of GNSS, as RTCM."""

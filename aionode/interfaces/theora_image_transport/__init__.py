@@ -1,0 +1,1 @@
+"""Interfaces of theora_image_transport: images as packets of Theora."""

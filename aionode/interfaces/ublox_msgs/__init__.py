@@ -1,0 +1,1 @@
+"""Interfaces of ublox_msgs: messages of the receivers of u-blox."""

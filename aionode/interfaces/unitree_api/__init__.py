@@ -1,0 +1,1 @@
+"""Interfaces of unitree_api: requests to robots of Unitree, and their responses."""

@@ -1,0 +1,1 @@
+"""Interfaces of ur_msgs: inputs, outputs and speed of Universal Robots."""

@@ -1,0 +1,1 @@
+"""Interfaces of velodyne_msgs: packets of the lidars of Velodyne."""

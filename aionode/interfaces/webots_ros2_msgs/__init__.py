@@ -1,0 +1,1 @@
+"""Interfaces of webots_ros2_msgs: sensors and scenes of the simulator Webots."""

@@ -1,0 +1,1 @@
+"""Interfaces of zed_msgs: objects, skeletons and services of the cameras of Stereolabs."""

@@ -1,0 +1,5 @@
+"""The package theora_image_transport of ROS 2, from aionode."""
+
+from aionode.rclpy._finder import provide
+
+provide(__name__)
