@@ -75,7 +75,7 @@ def test_packages_of_the_workspace_are_there(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "shown"),
     [
-        ("import grid_map_msgs.msg", "grid_map_msgs.msg"),
+        ("import plansys2_msgs.msg", "plansys2_msgs.msg"),
         ("import rclpy.nothing", "rclpy.nothing"),
         ("from rclpy import nothing", "rclpy.nothing"),
         ("from rclpy.node import Nodes", "rclpy.node.Nodes"),

@@ -14,7 +14,7 @@ from aionode.rclpy.missing import advice, missing_modules
     [
         ("my_robot_msgs.msg", "--interfaces FOLDER"),
         ("my_robot_interfaces", "--interfaces FOLDER"),
-        ("grid_map_msgs.srv", "--interfaces FOLDER"),
+        ("plansys2_msgs.srv", "--interfaces FOLDER"),
         ("launch_testing.actions", "fixtures for pytest"),
         ("ros2topic.api", "PYTHONPATH"),
         ("rqt_gui_py", "where ROS 2 is installed"),

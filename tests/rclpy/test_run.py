@@ -297,14 +297,14 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
 
 def test_a_missing_package_of_ros_says_what_to_do(folder: Path) -> None:
     """At the end of the traceback, and below a cause, too."""
-    (folder / "own.py").write_text("import rclpy\nfrom grid_map_msgs.msg import GridMap\n")
+    (folder / "own.py").write_text("import rclpy\nfrom plansys2_msgs.msg import Plan\n")
 
     done = run(folder, "own.py")
 
     *_, error, hint = done.stderr.splitlines()
     assert done.returncode == 1
-    assert error == "ModuleNotFoundError: No module named 'grid_map_msgs'"
-    assert hint.startswith("aionode.rclpy: grid_map_msgs is a package of messages that aionode")
+    assert error == "ModuleNotFoundError: No module named 'plansys2_msgs'"
+    assert hint.startswith("aionode.rclpy: plansys2_msgs is a package of messages that aionode")
     assert "aionode run --interfaces FOLDER PROGRAM" in hint
 
 
