@@ -113,6 +113,7 @@ ELSEWHERE = (
     "aionode.gateway.",
     "aionode.idl.",
     "aionode.launch.",
+    "aionode.learn.",
     "aionode.message.",
     "aionode.parameter.",
     "aionode.rclpy",

@@ -14,6 +14,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── CommandError (RuntimeError)
     ├── ConfigurationError (ValueError)
     ├── ContentFilterError (ValueError)
+    ├── ContractError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
@@ -109,6 +110,7 @@ from aionode.errors._interfaces import (
     MessageError,
     TypeDescriptionError,
 )
+from aionode.errors._learn import ContractError
 from aionode.errors._names import (
     InvalidLogLevelError,
     InvalidNamespaceException,
@@ -181,6 +183,7 @@ __all__ = [
     "ConfigurationError",
     "ConnectivityException",
     "ContentFilterError",
+    "ContractError",
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",

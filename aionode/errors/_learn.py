@@ -1,0 +1,23 @@
+"""Errors of contracts, and of the observations and data sets made by them."""
+
+from __future__ import annotations
+
+from aionode.errors._base import AionodeError
+
+__all__ = ["ContractError"]
+
+
+class ContractError(AionodeError, ValueError):
+    """A contract cannot be read, is not valid, or a message does not fit it.
+
+    Attributes:
+        path: The file of the contract.
+        where: The place in it, such as ``line 7: observations[0].max_age``; empty for the whole.
+        problem: What was given, and what fits.
+    """
+
+    def __init__(self, path: str, where: str, problem: str) -> None:
+        self.path = path
+        self.where = where
+        self.problem = problem
+        super().__init__(": ".join(filter(None, (f"contract {path}", where, problem))))
