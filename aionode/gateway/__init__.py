@@ -1,4 +1,4 @@
-"""The robot for browsers, programs and apps: one policy, and several ways in.
+"""The robot for browsers, programs and apps: several protocols on one port, governed by one policy.
 
 It needs the extra ``gateway``::
 
@@ -7,8 +7,8 @@ It needs the extra ``gateway``::
     async with Gateway(node, policy=Policy.load("policy.toml"), port=9090) as gateway:
         ...
 
-Clients of rosbridge and of Foxglove connect to one port, and so do browsers and curl. What each of
-them may do is said in one file; see `Policy`.
+Clients of rosbridge and Foxglove, browsers and curl all connect to one port. One file defines what
+each of them may do; see `Policy`.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ PLACES: Final = {
     "Session": "session.session",
     "typescript": "http.typescript",
 }
-"""The module of each public name that is not in that of the policy, which needs no web server."""
+"""The module of each public name outside the policy, which alone needs no web server."""
 
 _OF_GATEWAY = imported_on_first_use(
     __name__, dict.fromkeys(__all__, "policy.policy") | PLACES, "gateway"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Clients", "GatewayStats"]
 
 RELOAD_SEC: Final = 1.0
-"""Time between two looks at the policy file, in seconds."""
+"""Time between two checks of the policy file, in seconds."""
 
 
 class GatewayStats(msgspec.Struct, frozen=True):
@@ -42,7 +42,7 @@ class GatewayStats(msgspec.Struct, frozen=True):
         sent: Number of frames sent to current clients.
         dropped: Number of frames dropped because clients were too slow, by topic.
         received: Number of messages received, by topic.
-        holders: Who commands which topic.
+        holders: The client that commands each topic.
         audit_lost: Number of audit log lines that were not written.
     """
 
@@ -57,14 +57,14 @@ class GatewayStats(msgspec.Struct, frozen=True):
 
 
 class Clients:
-    """The clients of a robot, and the rules that hold for them: what the ways in share.
+    """The clients of a robot and the rules for them: everything that the protocols share.
 
-    `Gateway` and `Assistant` open and end it; each way in makes sessions, which it counts.
+    `Gateway` and `Assistant` open and end it; each protocol creates sessions through it.
 
     Args:
         node: The node by which the clients take part in the graph.
         policy: Who may do what.
-        ask: Asks a person; None if there is nobody to ask.
+        ask: Asks a person for approval; None if there is nobody to ask.
 
     Attributes:
         node: The node.
@@ -85,13 +85,13 @@ class Clients:
         """Refuse to start with a node that is not running.
 
         Raises:
-            RuntimeError: it does not.
+            RuntimeError: the node is not running.
         """
         if not self.node.is_running:
-            raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
+            raise RuntimeError(f"gateway: {self.node!r} is not running; enter it first")
 
     async def open(self, stack: AsyncExitStack) -> asyncio.TaskGroup:
-        """Create what the sessions share, until a stack ends, and return the group of its tasks."""
+        """Create the state that the sessions share, until a stack closes; return its task group."""
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         audit = Audit(self.node, self._policy.audit_file)
         stack.callback(audit.close)
@@ -110,19 +110,19 @@ class Clients:
             session.ended.set()
 
     def _doubt_all(self, is_long: bool) -> None:
-        """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
+        """Doubt all clients after a standstill: what they sent meanwhile was not read in time.
 
-        One that has nothing to do with commands answers a ping for nothing.
+        A client without commands then answers one unnecessary ping, which does no harm.
 
         Args:
-            is_long: Whether calls and goals are too old after it as well.
+            is_long: Whether the standstill was so long that calls and goals are too old as well.
         """
         for session in self.sessions:
             session.doubt(stood_still=is_long)
 
     @property
     def robot(self) -> Robot:
-        """The robot, as the sessions share it.
+        """The robot, as shared by the sessions.
 
         Raises:
             RuntimeError: the gateway was not entered.
@@ -149,19 +149,19 @@ class Clients:
 
     @property
     def policy(self) -> Policy:
-        """The rules that hold now."""
+        """The rules in force."""
         return self._policy
 
     @asynccontextmanager
     async def session(
         self, identity: Identity, kind: str, credentials: Credentials | None = None
     ) -> AsyncIterator[Session]:
-        """Yield a session, whose end gives everything back.
+        """Yield a session, and release everything it holds when it ends.
 
         Args:
             identity: Who the client is.
-            kind: The way in: ``rosbridge``, ``foxglove``, ``http``.
-            credentials: Its token, address and so on, to be judged again when the policy changes.
+            kind: The protocol: ``rosbridge``, ``foxglove``, ``http``.
+            credentials: Its token, address and so on, checked again when the policy changes.
 
         Raises:
             RefusedError: there are too many clients, and no other identity has more of them.
@@ -178,10 +178,11 @@ class Clients:
     def _make_room(self, identity: Identity) -> None:
         """Disconnect a client of the identity with the most clients, if the limit is reached.
 
-        So each identity has a share, and each address has one of that of its identity.
+        This gives each identity a fair share of the sessions, and each address a fair share within
+        its identity.
 
         Raises:
-            RefusedError: the newcomer itself has as many as anyone, give or take one.
+            RefusedError: the newcomer already has as many clients as any other, give or take one.
         """
         limit = self._policy.limits.clients
         staying = [session for session in self._sessions if not session.ended.is_set()]
@@ -193,24 +194,25 @@ class Clients:
             here = [each for each in own if each.identity.place == identity.place]
             greediest = largest(own, lambda each: each.identity.place)
             if len(here) + 1 >= len(greediest):
-                raise RefusedError("connection", f"there are {limit} clients already", "too_many")
-        # Sessions that move something end last; of the others, the oldest stay.
+                raise RefusedError("connection", f"there are already {limit} clients", "too_many")
+        # Sessions that move something are ended last; of the others, the newest go first.
         leaving = min(reversed(greediest), key=lambda each: each.publishes or each.has_goals)
         leaving.end(
-            f"there are {limit} clients, which is the limit, and {leaving.identity.name} has most "
-            "of them: another one takes the place"
+            f"there are {limit} clients, which is the limit, and "
+            f"{leaving.identity.name} has the most "
+            "of them: another client takes this place"
         )
 
     @asynccontextmanager
     async def session_of(
         self, scope: MutableMapping[str, Any], kind: str
     ) -> AsyncIterator[Session]:
-        """Yield the session of a request, which the door has let in.
+        """Yield the session for a request that the door has let in.
 
-        Its client is identified anew: the policy may have changed while the request arrived.
+        The client is identified again: the policy may have changed while the request arrived.
 
         Raises:
-            RefusedError: the policy does not know the client any more.
+            RefusedError: the policy no longer knows the client.
         """
         credentials, connection = scope["aionode.credentials"], scope["state"]["aionode_connection"]
         identity = self._policy.identify(credentials)
@@ -223,7 +225,7 @@ class Clients:
 
     @property
     def stats(self) -> GatewayStats:
-        """Counts of its work."""
+        """Counts of the gateway's work."""
         sessions: dict[str, int] = {}
         dropped: dict[str, int] = {}
         sent, refused = 0, self._refused
@@ -246,13 +248,13 @@ class Clients:
         )
 
     def note_refusal(self, credentials: Credentials, error: RefusedError) -> None:
-        """Write down that a client was refused before it had a session."""
+        """Record that a client was refused before it had a session."""
         self._refused += 1
         client = Identity("", address=credentials.address)
-        if error.code == "too_many":  # it is known
+        if error.code == "too_many":  # already known
             client = self._policy.identify(credentials)
         self.robot.audit.note(client, "connect", "", result=error.reason, code=error.code)
-        # A browser does not tell its page why.
+        # A browser does not tell its page the reason.
         self.robot.refusals.note(
             client, "connect", Refusal.of(error), error.subject, f"refused: {error.reason}"
         )
@@ -261,7 +263,7 @@ class Clients:
         """Apply a new policy from now on; rights that it does not grant end."""
         log = self.node.get_logger()
         if policy.tls != self._policy.tls:
-            log.warning("gateway: [tls] of the policy has changed; start the gateway again for it")
+            log.warning("gateway: [tls] has changed in the policy; restart the gateway to apply it")
         if policy.audit_file != self._policy.audit_file:
             self.robot.audit.use_file(policy.audit_file)
             log.info(f"gateway: the audit log goes to {policy.audit_file or 'no file'} from now on")
@@ -273,7 +275,7 @@ class Clients:
     # The policy file
 
     async def _follow_policy(self) -> None:
-        """Read the policy file again when it changes; a file with a mistake changes nothing."""
+        """Reload the policy file when it changes; a file with a mistake changes nothing."""
         path = self._policy.path
         if not path:
             return
@@ -289,13 +291,13 @@ class Clients:
         try:
             policy = Policy.load(path)
         except PolicyFileError as error:
-            self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
+            self.node.get_logger().error(f"{error}; the gateway keeps its current policy")
         else:
             self.use_policy(policy)
 
 
 def largest(sessions: Iterable[Session], key: Callable[[Session], str]) -> list[Session]:
-    """Return the largest group of clients that a program has not made itself, the oldest first."""
+    """Return the largest group of clients other than those created by a program, oldest first."""
     groups: dict[str, list[Session]] = defaultdict(list)
     for session in sessions:
         if session.credentials is not None:
@@ -304,7 +306,7 @@ def largest(sessions: Iterable[Session], key: Callable[[Session], str]) -> list[
 
 
 def modified(path: str) -> tuple[int, int] | None:
-    """Return when a file was written, and its number; None if it is not there."""
+    """Return a file's modification time and inode number; None if it does not exist."""
     try:
         status = Path(path).stat()
     except OSError:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 __all__ = ["Gateway"]
 
 REFUSALS_PER_SEC: Final = 50.0
-"""Frames that are read in a second of a client whose frames are refused."""
+"""Frames per second that are read from a client whose frames are refused."""
 
 
 class Gateway:
@@ -109,17 +109,17 @@ class Gateway:
 
     @property
     def stats(self) -> GatewayStats:
-        """Counts of its work."""
+        """Counts of the gateway's work."""
         return self.clients.stats
 
     # Lifetime
 
     async def __aenter__(self) -> Self:
-        """Listen.
+        """Start listening.
 
         Raises:
-            OSError: the address cannot be listened on: another program does, for example.
-            RuntimeError: the node does not run.
+            OSError: the address is not available, for example because another program uses it.
+            RuntimeError: the node is not running.
         """
         self.clients.check_node()
         listener = bound(self.host, self.port)
@@ -155,26 +155,27 @@ class Gateway:
     ) -> None:
         """Disconnect the clients: the stops of their leases are sent, and their goals cancelled."""
         if isinstance(error, Exception):
-            kind = error = traceback = None  # the group of tasks would wrap the program's error
+            kind = error = traceback = None  # the task group would wrap the program's error
         await to_the_end(self._stack.__aexit__(kind, error, traceback))
 
     def tell(self, text: str) -> None:
-        """Tell clients of MCP that listen of an event, such as ``the battery is low``.
+        """Tell MCP clients that listen about an event, such as ``the battery is low``.
 
-        They read it in the resource ``robot://events``, with the warnings of the robot's log.
+        They read it from the resource ``robot://events``, together with the warnings of the robot's
+        log.
 
         Raises:
             RuntimeError: the gateway serves no clients of MCP.
         """
         if self._mcp is None:
-            raise RuntimeError("gateway: give it mcp=True to tell its assistants something")
+            raise RuntimeError("gateway: it has no assistants to tell; create it with mcp=True")
         self._mcp.mcp.events.tell(text)
 
     async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:
         self.clients.end()
         server.stop()
         await serving
-        # Those of requests, which have no session any more:
+        # Those of requests whose session has already ended:
         await self.clients.robot.commands.close()
 
     # Routes
@@ -191,7 +192,7 @@ class Gateway:
         return Starlette(routes=routes, exception_handlers={HTTPException: _http.answer_http_error})
 
     async def _websocket(self, websocket: WebSocket) -> None:
-        """Serve a WebSocket by the protocol that its client asks for."""
+        """Serve a WebSocket with the protocol that its client requests."""
         kind, chosen = protocol_of(websocket.scope["subprotocols"])
         async with self.clients.session_of(websocket.scope, kind) as session:
             connection = websocket.scope["state"]["aionode_connection"]
@@ -211,9 +212,10 @@ class Gateway:
             await close(websocket, TRY_AGAIN_LATER, session.end_reason)
 
     async def _watch(self, session: Session) -> None:
-        """End the session of a client that gives no sign any more, though it has goals or commands.
+        """End the session of a client that has gone silent while it has goals or commands.
 
-        And that of a client that does not read its answers: it reads no goodbye either.
+        Also end the session of a client that does not read its answers; it would not read a goodbye
+        either.
         """
         robot = self.clients.robot
         while True:
@@ -222,14 +224,14 @@ class Gateway:
             connection = session.arrivals.connection
             if connection is None:
                 continue
-            is_lost = session.outbox.overflowed  # which is said already
+            is_lost = session.outbox.overflowed  # already logged
             if session.has_goals or (session.arrivals.is_doubtful and session.publishes):
                 session.arrivals.ask_for_sign()
-                # After a standstill of its own, the gateway first hears what has arrived in it.
+                # After a standstill of its own, the gateway first handles what arrived during it.
                 silent_sec = min(connection.silent_sec(), robot.standstills.since_sec())
                 if not is_lost and silent_sec > limit and not connection.has_unread():
                     is_lost = True
-                    reason = f"it gave no sign for {limit:g} s, with goals or commands under way"
+                    reason = f"it was silent for {limit:g} s while it had goals or commands"
                     session.rights.note(Refusal.DISCONNECTED, "connection", reason)
             if is_lost:
                 session.ended.set()
@@ -237,11 +239,11 @@ class Gateway:
 
 
 def protocol_of(offered: Sequence[str]) -> tuple[str, str | None]:
-    """Return the way in that a WebSocket asks for, and the name of the protocol that it hears.
+    """Return the protocol that a WebSocket requests, and the subprotocol to answer with.
 
     Args:
         offered: The subprotocols that its client offers, without the token. Clients of rosbridge
-            offer none; a browser wants to hear one of those that it offers.
+            offer none; a browser expects one of those that it offers.
 
     Raises:
         RefusedError: none of them is known; its code is ``unsupported``.
@@ -255,19 +257,20 @@ def protocol_of(offered: Sequence[str]) -> tuple[str, str | None]:
         fitting = ", ".join(_foxglove.SUBPROTOCOLS)
         raise RefusedError(
             f"subprotocol {offered[0][:80]!r}",
-            f"it is unknown; there are {fitting}, and none for rosbridge",
+            f"unknown subprotocol; use {fitting}, or none for rosbridge",
             "unsupported",
         )
     return "rosbridge", None
 
 
 def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
-    """Return a `receive` of WebSockets that takes no more frames than a rate allows.
+    """Return a `receive` for WebSockets that limits the rate of frames.
 
-    A client that sends faster is not read meanwhile, and so has to wait. One whose frames are
-    refused has to wait longer: requests in vain must cost the robot next to nothing. What waits is
-    not as new as it seems when it is read, so a client that had to wait is doubted. A driver who is
-    refused because another one drives does not wait, or its old commands would come later.
+    A client that sends faster is not read meanwhile, so it has to wait. A client whose frames are
+    refused waits longer: futile requests must cost the robot almost nothing. Frames that had to
+    wait are older than they seem when they are read, so a client that had to wait is doubted. A
+    driver that is refused because another one drives does not wait; otherwise its old commands
+    would be read later.
     """
     clock = robot.clock
     bucket = Bucket(rate_hz, robot.time_base.steady_ns)
@@ -281,7 +284,9 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
             await clock.sleep(wait_sec)
         if has_waited:
             session.doubt()
-            reason = f"it sends more than {waited_for.rate_hz:g} a second, and so is read later"
+            reason = (
+                f"it sends more than {waited_for.rate_hz:g} a second, so it is read more slowly"
+            )
             session.rights.note(Refusal.LATE, what, reason)
 
     async def receive_paced() -> Any:
@@ -301,11 +306,11 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
 async def until(
     event: asyncio.Event, work: Coroutine[Any, Any, None], *others: Coroutine[Any, Any, None]
 ) -> None:
-    """Run work until it ends, or an event cancels it; its exception is raised as it is.
+    """Run work until it ends or an event cancels it; raise its exception unchanged.
 
     Args:
-        event: Cancels it.
-        work: A coroutine, which is run.
+        event: Cancels the work.
+        work: The coroutine to run.
         others: Coroutines that run beside it, until it ends.
     """
     error: Exception | None = None
@@ -335,16 +340,16 @@ def is_loopback(host: str) -> bool:
 
 
 def bound(host: str, port: int) -> socket.socket:
-    """Return a socket that is bound to an address.
+    """Return a socket bound to an address.
 
     Raises:
-        OSError: it cannot be bound.
+        OSError: the address cannot be bound.
     """
     family, kind, protocol, _, address = socket.getaddrinfo(
         host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
     )[0]
-    # asyncio sets TCP_NODELAY only where the protocol says TCP: without it a small frame may wait
-    # for 40 ms until the client has acknowledged the one before.
+    # asyncio sets TCP_NODELAY only if the socket's protocol is TCP: without it a small frame may
+    # wait for 40 ms until the client has acknowledged the previous one.
     listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -81,7 +81,7 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["gateway", "--policy", str(wrong), "--limit", "clients=3"]) == 2
     assert "write it under [limits] there" in capsys.readouterr().err
     assert main(["gateway", "--limit", "speed=3"]) == 1
-    assert "'speed=3' is no limit; there are clients, " in capsys.readouterr().err
+    assert "'speed=3' is not a limit; use one of clients, " in capsys.readouterr().err
 
 
 async def test_types_writes_what_is_in_use(

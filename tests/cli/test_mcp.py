@@ -48,7 +48,7 @@ async def test_without_a_tool_they_are_listed(tool: Node, screen: Screen) -> Non
         policy=policy_of(None, allow_write=False), **OPTIONS,
     )  # fmt: skip
 
-    assert "stop: Stop all that you move" in screen.text
+    assert "stop: Stop everything that you move" in screen.text
     assert "publish" not in [line.partition(":")[0] for line in screen.text.splitlines()]
 
 
@@ -137,7 +137,7 @@ async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
     )
     async with mcp.Client(server) as client:
         answered = await client.call_tool("list", {})
-        assert "domain 7, which shows no nodes" in str(client.instructions)
+        assert "domain 7, with no nodes" in str(client.instructions)
 
     assert not answered.is_error
 

@@ -54,7 +54,11 @@ REFUSED = {
     ),
     "texts for numbers": (NAMES, '{"position":[' + '"",' * (SIZE // 3) + '""]}', "needs a float"),
     "base64 of a wrong length": (NUMBERS, '{"data":"' + "A" * (SIZE - 1) + '"}', "base64"),
-    "numbers": (NUMBERS, '{"data":[' + "1," * 1_100_000 + "1]}", "values, at most 1000000 fit"),
+    "numbers": (
+        NUMBERS,
+        '{"data":[' + "1," * 1_100_000 + "1]}",
+        "values, at most 1000000 are",
+    ),
     "a huge name": (NAMES, '{"' + "x" * SIZE + '":1}', "no such field"),
 }
 """By what they are: the type, the values in JSON, and a pattern of the answer."""

@@ -117,12 +117,12 @@ ROWS: Final[dict[str, Row]] = {
                  rule="fields = { 'NUMBER' = { min = 0, max = 5, outside = 'clamp' } }"),
     "finite": Row("finite", tuple(NUMBERS), "finite = true", code=""),
     "ask": Row("ask", rule="ask = true", code="not_confirmed", reason="a person has said no"),
-    "nobody": Row("ask", rule="ask = true", code="not_confirmed", reason="nobody is there to ask"),
+    "nobody": Row("ask", rule="ask = true", code="not_confirmed", reason="there is nobody to ask"),
     "held": Row("lease", ("publish",), LEASE, code="held", reason="pilot commands it now"),
     "taken": Row("lease", ("publish",), code="held", reason="pilot commands it now"),
     "stamp": Row("lease", ("publish",), LEASE, code="too_old", stamp_sec=5, reason="s old"),
     "arrival": Row("lease", ("publish",), f"{LEASE}\nask = true", code="too_old",
-                   reason="s old, and may be 30 s"),
+                   reason="s old, at most 30 s are allowed"),
     "silence": Row("lease", ("publish",), "lease = { ttl_sec = 0.6, max_age_sec = 30 }", code=""),
 }  # fmt: skip
 """The table. A lease is refused where another client holds it, also to a client whose rule has no

@@ -310,7 +310,7 @@ async def test_a_call_that_fails_says_why(node: Node) -> None:
     assert failure["callId"] == 7
     assert "cannot be switched off" in failure["message"]
     assert "invalid JSON" in malformed["message"]
-    assert "no service 1000" in unknown["message"]
+    assert "service 1000 does not exist" in unknown["message"]
 
 
 async def test_parameters_are_read_set_and_followed(

@@ -381,7 +381,7 @@ async def test_channels_that_are_no_colours_are_refused(
     answer = await client.get("/topics/flow")
 
     assert (answer.status_code, answer.json()["code"]) == (422, "unsupported_image")
-    assert "1, 3 and 4 fit" in answer.json()["error"]
+    assert "use 1, 3 or 4" in answer.json()["error"]
 
 
 @pytest.mark.parametrize("compressed", [False, True])

@@ -249,7 +249,7 @@ async def test_an_assistant_is_who_it_is_started_as(node: Any) -> None:
 
     assert Assistant(node, policy, name="other").identity().name == "other"
     assert Assistant(node, policy).identity().name == "model"
-    with pytest.raises(ConfigurationError, match="there is model, other"):
+    with pytest.raises(ConfigurationError, match="use one of model, other"):
         Assistant(node, policy, name="nobody")
     strangers = Policy.parse('[[who]]\nname = "a"\ntoken = "a"\n')
     with pytest.raises(RefusedError):

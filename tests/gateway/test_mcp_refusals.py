@@ -25,4 +25,4 @@ async def test_a_call_without_a_place_has_a_number_and_a_line(
         assert result.is_error
         assert bench.clients.stats.refusals == {"too_many": 1}
     warnings = [each.getMessage() for each in caplog.records if each.levelno == logging.WARNING]
-    assert sum("connection: refused: there are 1 clients" in line for line in warnings) == 1
+    assert sum("connection: refused: there are already 1 clients" in line for line in warnings) == 1

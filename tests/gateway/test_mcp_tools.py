@@ -78,7 +78,7 @@ async def test_the_instructions_name_the_domain_and_the_nodes(assisted: Bench, e
     """A program of the desktop passes no environment on, and sees no robot in domain 0."""
     client = await assisted.connect(era)
 
-    assert "domain 0, which shows 1 node." in str(client.instructions)
+    assert "domain 0, with 1 node." in str(client.instructions)
 
 
 async def test_list_and_describe_show_the_users_names(assisted: Bench, era: str) -> None:
@@ -170,13 +170,13 @@ async def test_move_is_refused_without_a_lease(assisted: Bench, era: str) -> Non
 MISTAKES = [
     ("move", {"topic": "/cmd_vel", "message": {"linear": {"z0": 1}}, "seconds": 1}, "did you mean"),
     ("move", {"topic": "/cmd_vel", "message": {"linear": {"x": 2}}, "seconds": 1}, "-0.5 and 0.5"),
-    ("move", {"topic": "/cmd_vel", "message": {}, "seconds": 60}, "at most 10 s fit"),
+    ("move", {"topic": "/cmd_vel", "message": {}, "seconds": 60}, "at most 10 s are allowed"),
     ("move", {"topic": "/cmd_vel", "message": {}}, "missing required field `seconds`"),
     ("move", {"topic": "/cmd", "message": {}, "seconds": 1}, "the policy does not allow"),
     ("read", {"topic": "/tekst"}, "did you mean /text?"),
     ("read", {"topik": "/text"}, "did you mean topic?"),
     ("read", {"topic": "/text", "timeout_sec": 0.05}, "published by /base"),
-    ("list", {"kind": "tpics"}, "one of actions, all, nodes, services, topics fits"),
+    ("list", {"kind": "tpics"}, "use one of actions, all, nodes, services, topics"),
     ("lst", {}, "did you mean list?"),
     ("describe", {"name": "/tekst"}, "did you mean /text?"),
     ("describe", {"name": "std_msgs/msg/Strin"}, "std_msgs/msg/String"),
@@ -187,7 +187,11 @@ MISTAKES = [
     ("do_count", {"order": 1.5}, "order"),
     ("do_count", {"order": 1, "seconds": -1}, "above 0"),
     ("look", {}, "0 topics with images"),
-    ("transform", {"target": "odom", "source": "base", "timeout_sec": 0.05}, "no transforms came"),
+    (
+        "transform",
+        {"target": "odom", "source": "base", "timeout_sec": 0.05},
+        "no transforms",
+    ),
 ]
 
 

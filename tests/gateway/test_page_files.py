@@ -71,7 +71,7 @@ async def test_a_path_that_is_not_there_is_answered_with_what_to_do(
     answer = await web.get("/robot/page/main.js")
 
     assert answer.status_code == 404
-    assert "a proxy has to take away a prefix" in answer.json()["error"]
+    assert "a proxy has to remove its own prefix" in answer.json()["error"]
 
 
 async def test_a_websocket_at_another_path_is_answered_with_what_to_do(

@@ -131,7 +131,7 @@ async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window
         await bench.advance(60.0)
     refusals.note(Identity("quiet"), "http", Refusal.NOT_ALLOWED, "publish /x", "no")
 
-    left_out = [line for line in lines(caplog) if "left out" in line]
+    left_out = [line for line in lines(caplog) if "were omitted" in line]
     assert len(left_out) == 2
     assert all(line.startswith(r"gateway: loud\x1b: 7 more lines in 10 s") for line in left_out)
 
@@ -278,7 +278,7 @@ OPS: list[tuple[str, dict[str, object], Refusal, str]] = [
     ("call_service", {"service": "/rosapi/none"}, Refusal.INVALID, "call_service /rosapi/none: "),
     ("send_action_goal", {"action": "/none"}, Refusal.FAILED, "send_action_goal /none: "),
     ("fly", {}, Refusal.INVALID, "op: 'fly' is unknown"),
-    ("auth", {}, Refusal.IGNORED, "auth: has no effect"),
+    ("auth", {}, Refusal.IGNORED, "auth: it has no effect"),
 ]  # fmt: skip
 
 
@@ -355,7 +355,8 @@ async def test_more_clients_than_there_may_be_are_in_the_log(
         assert (await get(gateway, "/topics")).status_code == 429
 
     (line,) = lines(caplog)
-    assert line.startswith("gateway: local (127.0.0.1, connect): connection: refused: there are 1")
+    start = "gateway: local (127.0.0.1, connect): connection: refused: there are already 1 "
+    assert line.startswith(start)
 
 
 async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
@@ -393,7 +394,7 @@ async def test_messages_for_a_slow_client_are_counted_and_said(
 
     assert bench.robot.refusals.counts == {Refusal.SLOW: 7}
     (line,) = lines(caplog)
-    assert "/words: messages are dropped: it reads more slowly than they come" in line
+    assert "/words: messages are dropped: it reads more slowly than they arrive" in line
 
 
 async def test_a_client_that_sends_too_fast_is_said_to_be_late(
@@ -406,4 +407,4 @@ async def test_a_client_that_sends_too_fast_is_said_to_be_late(
             await page.send('{"op":"set_level","level":"none"}')
         await until(lambda: gateway.stats.refusals.get("late", 0) >= 1)
 
-    assert "it sends more than 20 a second, and so is read later" in caplog.text
+    assert "it sends more than 20 a second, so it is read more slowly" in caplog.text

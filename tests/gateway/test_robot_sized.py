@@ -78,7 +78,7 @@ async def test_a_call_with_many_objects_is_answered() -> None:
         answer = json.loads(await page.recv())
 
     assert (answer["id"], answer["result"]) == (1, False)
-    assert "objects and lists, at most 100000 fit, as frame_parts" in answer["values"]
+    assert "objects and lists, at most 100000 are allowed by frame_parts" in answer["values"]
 
 
 async def test_a_frame_that_is_too_large_is_in_the_log(
@@ -95,7 +95,7 @@ async def test_a_frame_that_is_too_large_is_in_the_log(
         assert gateway.stats.refusals == {"too_large": 1}
 
     (line,) = lines(caplog)
-    assert "frame: at most 1000 bytes fit, as frame_bytes says; the connection has ended" in line
+    assert "frame: at most 1000 bytes are allowed by frame_bytes; the connection has ended" in line
 
 
 # Time for calls
@@ -160,11 +160,11 @@ def test_limits_are_given_as_text() -> None:
 @pytest.mark.parametrize("text", ["frame_bytes", "speed=1", "clients=many", "clients=0", "=1"])
 def test_a_limit_that_is_none_is_refused(text: str) -> None:
     """With the limits that there are."""
-    with pytest.raises(ValueError, match=r"there are clients, frame_bytes|no number|above 0"):
+    with pytest.raises(ValueError, match=r"one of clients, frame_bytes|not a valid|above 0"):
         Limits().with_given([text])
 
 
 def test_a_limit_of_nothing_is_a_mistake_in_the_file() -> None:
     """With it, no client could do anything."""
-    with pytest.raises(PolicyFileError, match="needs a number above 0"):
+    with pytest.raises(PolicyFileError, match="use a number above 0"):
         Policy.parse("[limits]\ncall_sec = 0")

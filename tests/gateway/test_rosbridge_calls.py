@@ -174,10 +174,10 @@ async def test_a_client_serves_the_robot(client: RosbridgeClient, node: Node) ->
     ("answer", "told"),
     [
         ({"result": False, "values": "out of paper"}, "out of paper"),
-        ({"result": False}, "failed"),
+        ({"result": False}, "reported a failure"),
         ({"result": True, "values": {"summ": 1}}, "did you mean 'sum'"),
-        ({"result": True, "values": "text"}, "needs an object"),
-        ({"result": True, "values": None}, "needs an object"),
+        ({"result": True, "values": "text"}, "use an object"),
+        ({"result": True, "values": None}, "use an object"),
     ],
 )
 async def test_a_client_that_fails_to_serve_tells_the_caller(

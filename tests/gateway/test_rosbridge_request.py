@@ -127,7 +127,7 @@ def test_incomplete_fragments_do_not_grow_without_limit() -> None:
 
     for num in range(45):
         store.add(part("", num, 10_000, str(num)))
-    with pytest.raises(MessageError, match="more than 1000"):
+    with pytest.raises(MessageError, match="exceed 1000"):
         store.add(part("x" * 100, 0, 2))
     assert store.add(part("a", 0, 1)) == "a"
 

@@ -73,7 +73,7 @@ async def test_a_service_is_no_topic_though_it_belongs_to_an_action(
     name = "example_interfaces/action/Fibonacci_SendGoal"
     client.send("subscribe", topic="/x", type=name)
 
-    assert "no name of a type of msg" in (await client.receive())["msg"]
+    assert "not the name of a type of msg" in (await client.receive())["msg"]
 
 
 async def test_each_compression_has_its_form(robot: Robot, node: Node) -> None:
@@ -253,7 +253,7 @@ async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
         ),
         ({"topic": "/t", "type": "std_msgs/Strin", "msg": {}}, "std_msgs/msg/Strin"),
         ({"topic": "/t", "msg": {}}, "/t"),
-        ({"topic": 5, "msg": {}}, "publish.topic: 5 (int), needs text"),
+        ({"topic": 5, "msg": {}}, "publish.topic: 5 (int); use text"),
         ({"msg": {}}, "publish.topic: missing"),
         ({"topic": "a b", "type": "std_msgs/String"}, "a b"),
         ({"topic": "/t", "type": "std_msgs/String", "msg": "text"}, "publish.msg"),

@@ -233,7 +233,7 @@ def test_values_may_come_in_the_order_of_the_fields() -> None:
 
     twist = from_json(Twist, sent, NOW_NS)
     assert (twist.linear.x, twist.angular.z) == (1.0, 2.0)
-    with pytest.raises(MessageError, match="2 values in a list, has 1 fields"):
+    with pytest.raises(MessageError, match="2 values in a list for 1 fields"):
         from_json(String, ["a", "b"], NOW_NS)
 
 

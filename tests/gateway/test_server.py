@@ -147,7 +147,7 @@ async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
     logging.getLogger("httpx").disabled = False
     lines = [json.loads(line) for line in log.read_text().splitlines()]
     assert {line["who"] for line in lines if line["action"] == "publish"} == {"operator"}
-    assert "its token is not known" in caplog.text  # what is written is caught
+    assert "its token is unknown" in caplog.text  # what is written is caught
     assert TOKEN not in caplog.text + log.read_text()
     assert log.stat().st_mode & 0o777 == 0o600
 
@@ -412,7 +412,7 @@ async def test_a_policy_file_is_read_again(
     async with serving(Policy.load(path)) as gateway, raw_connect(gateway, "/", {}, []):
         await until(lambda: gateway.stats.sessions)
         path.write_text("[[allow]]\nsee = 5")
-        await until(lambda: "keeps the policy that it has" in caplog.text)
+        await until(lambda: "keeps its current policy" in caplog.text)
         assert gateway.clients.policy.allow
         path.write_text("[[who]]\nname = 'local'\nloopback = true")
         await until(lambda: not gateway.clients.policy.allow)
@@ -449,7 +449,7 @@ async def test_what_a_changed_policy_file_cannot_change_is_said(
                 await websocket.recv()
         await until(lambda: not gateway.stats.sessions)
     assert len(logs[0].read_text().splitlines()) == 1
-    assert "[tls] of the policy has changed; start the gateway again" in caplog.text
+    assert "[tls] has changed in the policy; restart the gateway" in caplog.text
     assert f"audit log goes to {logs[1]}" in caplog.text
 
 
@@ -464,7 +464,7 @@ async def test_a_program_has_sessions_of_its_own() -> None:
 
 async def test_a_gateway_needs_a_node_that_runs(context: Context) -> None:
     """Otherwise nothing would ever be delivered."""
-    with pytest.raises(RuntimeError, match="does not run"):
+    with pytest.raises(RuntimeError, match="is not running"):
         await Gateway(Node("late", context=context)).__aenter__()
 
 

@@ -305,7 +305,7 @@ async def test_what_a_page_asked_for_in_a_standstill_is_not_done(what: str) -> N
         await client.send(op)
         stand_still(1.5)
         told = str(await answer_of(client))
-        assert "it may have waited while the gateway stood still; send it again" in told
+        assert "it may have waited while the gateway was stalled; send it again" in told
         await until(lambda: not session_of(gateway).arrivals.is_doubtful)
         assert deeds.done == []
         await client.send(op)

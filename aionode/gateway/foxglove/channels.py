@@ -1,4 +1,4 @@
-"""The channels and services that a client of Foxglove's protocol is told of."""
+"""The channels and services announced to a client of Foxglove's protocol."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ DEPTH: Final = 100
 """Messages of a channel that may wait for the client; the outbox limits their bytes."""
 
 MOST_QUESTIONS: Final = 8
-"""Types that are asked from other nodes at a time."""
+"""Types requested from other nodes at a time."""
 
 WARNING: Final = 1
 
 
 class Named(NamedTuple):
-    """A topic or a service, with one of its types."""
+    """A topic or service with one of its types."""
 
     name: str
     type_name: str
 
 
 class Channels:
-    """The channels and services that one client is told of, and its subscriptions.
+    """The channels and services announced to one client, and its subscriptions.
 
-    A channel is announced with its definition, and subscribed to when the client asks for it.
+    A channel is announced with its definition; it is subscribed to when the client asks for it.
 
     Args:
         session: The session of the client.
@@ -102,7 +102,7 @@ class Channels:
             return
         self._unknown.add(named.type_name)
         self._session.rights.note_failure(error, f"{named.name} is left out")
-        text = f"{named.name} is left out: {str(error) or 'no node describes its type'}"
+        text = f"{named.name} is not announced: {str(error) or 'no node describes its type'}"
         status = {"level": WARNING, "message": text, "id": named.type_name}
         self._session.outbox.send(frames.op_frame("status", status))
 
@@ -123,9 +123,10 @@ class Channels:
         self._tell("advertiseServices", "services", service)
 
     def _tell(self, op: str, field: str, item: dict[str, Any]) -> None:
-        """Send a new channel or service with the others of this turn of the loop, in one frame.
+        """Send a new channel or service, in one frame with the others of this loop iteration.
 
-        A frame for each would be more than may wait for the client, in a large system.
+        In a large system, one frame for each would exceed the limit of what may wait for the
+        client.
         """
         if not self._news:
             asyncio.get_running_loop().call_soon(self._send_news)
@@ -137,14 +138,14 @@ class Channels:
         self._news.clear()
 
     def service(self, service_id: int) -> Named:
-        """Return the service that the client was told of by this id.
+        """Return the service that was announced to the client with this id.
 
         Raises:
             MessageError: there is none.
         """
         named = self._names.get(service_id)
         if named is None or named not in self._services:
-            raise MessageError("call", f"there is no service {service_id} any more")
+            raise MessageError("call", f"service {service_id} does not exist any more")
         return named
 
     # Subscriptions of the client
@@ -158,9 +159,9 @@ class Channels:
         """
         named = self._names.get(channel_id)
         if named is None or named not in self._topics:
-            raise MessageError("subscribe", f"there is no channel {channel_id} any more")
+            raise MessageError("subscribe", f"channel {channel_id} does not exist any more")
         if subscription_id in self._subscriptions:
-            raise MessageError("subscribe", f"the id {subscription_id} is in use")
+            raise MessageError("subscribe", f"subscription id {subscription_id} is in use")
 
         def frame(received: Received) -> Frame:
             return frames.message_frame(subscription_id, self._time_ns(received), received.raw)
@@ -175,7 +176,7 @@ class Channels:
         self._subscriptions[subscription_id] = (channel_id, subscribed)
 
     def tell_ended(self, ended: list[Subscribed]) -> None:
-        """Tell the client which subscriptions the policy, which has changed, has ended."""
+        """Tell the client which of its subscriptions a change of policy has ended."""
         for subscription_id, (_, subscribed) in list(self._subscriptions.items()):
             if subscribed in ended:
                 del self._subscriptions[subscription_id]
@@ -184,19 +185,19 @@ class Channels:
                 self._session.outbox.send(frames.op_frame("status", status))
 
     def unsubscribe(self, subscription_ids: Iterable[int]) -> None:
-        """End subscriptions; those that are not known have ended with their channel."""
+        """End subscriptions; unknown ones have already ended with their channel."""
         for number in list(subscription_ids):
             if number in self._subscriptions:
                 self._subscriptions.pop(number)[1].close()
 
 
 def everyone(types: dict[str, list[str]]) -> set[Named]:
-    """Return each name with each of its types."""
+    """Yield each name with each of its types."""
     return {Named(name, kind) for name, kinds in types.items() for kind in kinds}
 
 
 def schema(type_name: str, cls: Any) -> dict[str, Any]:
-    """Return how messages of a class are encoded."""
+    """Return how messages of a class are encoded, as Foxglove describes it."""
     return {
         "encoding": "cdr",
         "schemaName": type_name,

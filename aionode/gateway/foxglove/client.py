@@ -37,24 +37,25 @@ CAPABILITIES: Final = (
 )
 ENCODINGS: Final = ("cdr", "json")
 SETTLING_SEC: Final = 0.1
-"""Time for which a change of the graph waits for further ones: a robot that starts has hundreds."""
+"""How long after a change of the graph to wait for further ones: a starting robot makes
+hundreds."""
 
 MOST_MALFORMED: Final = 100
-"""Frames that are no ops that a client may send before it is disconnected."""
+"""Number of frames that are not valid ops after which a client is disconnected."""
 
 MOST_CHANNELS: Final = 1000
-"""Channels that a client may advertise, of all topics together."""
+"""Maximum number of channels that a client may advertise."""
 
 ERROR: Final = 2
-"""The level of a status; 0 is information and 1 a warning."""
+"""The level of an error status; 0 is information and 1 a warning."""
 
 
 async def serve_frames(
     session: Session, incoming: AsyncIterator[bytes | str], player: Player | None = None
 ) -> None:
-    """Speak with one client until its frames end.
+    """Serve one client until its frames end.
 
-    Cancelling ends all that the client has begun.
+    Cancelling ends everything that the client has started.
 
     Args:
         session: The session of the client; its outbox is sent by the caller.
@@ -129,13 +130,13 @@ class Client:
                 await robot.clock.sleep(SETTLING_SEC)
 
     def _note_policy(self, ended: list[Subscribed]) -> None:
-        """Handle a change of policy, which has ended subscriptions."""
+        """Handle a change of policy that has ended subscriptions."""
         self._channels.tell_ended(ended)
         self._parameters.forget(ended)
         self._news.set()
 
     async def take(self, frame: bytes | str) -> None:
-        """Handle a frame; the client is told of failures by a status."""
+        """Handle a frame; failures are reported to the client as a status."""
         try:
             most = self._session.rights.limits.frame_parts
             asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
@@ -147,11 +148,11 @@ class Client:
         try:
             await self._lanes.admit(frame)
             await self._begin(asked)
-        except MessageError as error:  # too much is under way
+        except MessageError as error:  # too much is in progress
             self._refuse(error)
 
     async def _begin(self, asked: frames.Asked) -> None:
-        """Begin the op of a frame, behind the ops that it has to wait for."""
+        """Start the op of a frame, after the ops that it has to wait for."""
         match asked:
             case frames.Advertise():
                 for channel in asked.channels:
@@ -160,7 +161,8 @@ class Client:
                 for channel_id in asked.channel_ids:
                     await self._put(("publish", channel_id), self._unadvertise, channel_id)
             case frames.ClientMessage():
-                arrived_ns = self._session.arrivals.arrival_ns()  # it may wait, and be too old then
+                # it may wait, and be too old by then
+                arrived_ns = self._session.arrivals.arrival_ns()
                 await self._put(("publish", asked.channel_id), self._publish, asked, arrived_ns)
             case frames.ServiceCall():
                 self._start(self._call, asked, self._session.arrivals.arrival_ns())
@@ -180,7 +182,7 @@ class Client:
         self._lanes.start(partial(self._attempt, work, *arguments))
 
     async def _attempt(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
-        """Await work, and tell the client if it fails."""
+        """Await work, and report a failure to the client."""
         try:
             await work(*arguments)
         except (AionodeError, TimeoutError) as error:
@@ -219,12 +221,12 @@ class Client:
     async def _advertise(self, channel: frames.ClientChannel) -> None:
         if channel.encoding not in ENCODINGS:
             problem = f"{channel.encoding!r}; use one of {', '.join(ENCODINGS)}"
-            raise MessageError(f"advertise {channel.topic}: encoding", problem)
+            raise MessageError(f"encoding of {channel.topic}", problem)
         if channel.id in self._published:
-            raise MessageError("advertise", f"the channel {channel.id} is advertised already")
+            raise MessageError("advertise", f"channel {channel.id} is already advertised")
         if len(self._published) >= MOST_CHANNELS:
-            raise MessageError("advertise", f"there are {MOST_CHANNELS} channels, the limit")
-        self._published[channel.id] = channel  # before it waits: others advertise meanwhile
+            raise MessageError("advertise", f"{MOST_CHANNELS} channels are advertised, the limit")
+        self._published[channel.id] = channel  # before it waits: others may advertise meanwhile
         try:
             await self._session.advertise(channel.topic, channel.schema_name)
         except BaseException:
@@ -234,13 +236,13 @@ class Client:
     async def _unadvertise(self, channel_id: int) -> None:
         channel = self._published.pop(channel_id, None)
         if channel is None:
-            raise MessageError("unadvertise", f"there is no channel {channel_id} of this client")
+            raise MessageError("unadvertise", f"the client has no channel {channel_id}")
         await self._session.unadvertise(channel.topic)
 
     async def _publish(self, given: frames.ClientMessage, arrived_ns: int) -> None:
         channel = self._published.get(given.channel_id)
         if channel is None:
-            problem = f"there is no channel {given.channel_id} of this client; advertise it first"
+            problem = f"the client has no channel {given.channel_id}; advertise it first"
             raise MessageError("message", problem)
         values = values_of(channel.encoding, given.data, self._session.rights.limits.frame_parts)
         await self._session.publish(
@@ -250,7 +252,7 @@ class Client:
     async def _call(self, call: frames.ServiceCall, arrived_ns: int) -> None:
         try:
             if call.encoding not in ENCODINGS:
-                raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
+                raise MessageError("call", f"encoding {call.encoding!r}; use one of {ENCODINGS}")
             name, type_name = self._channels.service(call.service_id)
             values = values_of(call.encoding, call.data, self._session.rights.limits.frame_parts)
             # The protocol has no time limit.
@@ -275,10 +277,10 @@ class Client:
 
 
 def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
-    """Return the values of a message or request: CDR as it is, JSON decoded.
+    """Return the values of a message or request: CDR unchanged, JSON decoded.
 
     Raises:
-        MessageError: the bytes are no JSON.
+        MessageError: the bytes are not JSON.
     """
     if encoding == "cdr":
         return bytes(data)
@@ -286,7 +288,7 @@ def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
 
 
 class Connections:
-    """The connection graph, as one client has it.
+    """The connection graph as sent to one client.
 
     Args:
         session: Its session, which omits names that the policy hides.
@@ -312,7 +314,7 @@ class Connections:
             return
         published, subscribed, served = changed
         topics = {*gone[0], *gone[1]}
-        # A topic that has lost its publishers only is one without publishers, and not removed.
+        # A topic that has only lost its publishers remains, as one without publishers.
         left = {name for name in topics if name in now[0] or name in now[1]}
         for name in left:
             published.update({} if name in now[0] else {name: []})
@@ -331,11 +333,11 @@ class Connections:
         )
 
     def _connections(self) -> list[dict[str, list[str]]]:
-        """Return the nodes by what they publish, subscribe and serve."""
+        """Return the nodes that publish, subscribe to and serve each name."""
         kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVER)
         return [self._session.graph.connections(kind) for kind in kinds]
 
 
 def listed(nodes: dict[str, list[str]], ids: str) -> list[dict[str, Any]]:
-    """Return the names with their nodes in the form of the protocol."""
+    """Return the names with their nodes in the form that the protocol uses."""
     return [{"name": name, ids: nodes[name]} for name in sorted(nodes)]

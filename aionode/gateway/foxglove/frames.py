@@ -58,7 +58,7 @@ Id = Annotated[int, msgspec.Meta(ge=0, lt=1 << 32)]
 
 
 class Op(msgspec.Struct, frozen=True, rename="camel", tag_field="op"):
-    """An op of a client in JSON; fields that are unknown here are ignored."""
+    """An op of a client in JSON; unknown fields are ignored."""
 
 
 class Wish(msgspec.Struct, frozen=True, rename="camel"):
@@ -78,7 +78,7 @@ class ClientChannel(msgspec.Struct, frozen=True, rename="camel"):
 
 
 class FoxgloveParameter(msgspec.Struct, frozen=True):
-    """A parameter, named by its node, a dot and its own name, as ``/driver.speed``."""
+    """A parameter, named by its node, a dot and its own name, such as ``/driver.speed``."""
 
     name: str
     value: Any = None
@@ -86,61 +86,61 @@ class FoxgloveParameter(msgspec.Struct, frozen=True):
 
 
 class Subscribe(Op, frozen=True, tag="subscribe"):
-    """Messages of these channels."""
+    """Subscribe to these channels."""
 
     subscriptions: list[Wish]
 
 
 class Unsubscribe(Op, frozen=True, tag="unsubscribe"):
-    """No more of them."""
+    """Unsubscribe from them."""
 
     subscription_ids: list[Id]
 
 
 class Advertise(Op, frozen=True, tag="advertise"):
-    """The client publishes these topics."""
+    """Advertise topics that the client will publish."""
 
     channels: list[ClientChannel]
 
 
 class Unadvertise(Op, frozen=True, tag="unadvertise"):
-    """It publishes them no more."""
+    """Stop advertising topics."""
 
     channel_ids: list[Id]
 
 
 class GetParameters(Op, frozen=True, tag="getParameters"):
-    """The values of these parameters; without names, of all."""
+    """Request the values of these parameters; without names, of all."""
 
     parameter_names: list[str] = []
     id: str | None = None
 
 
 class SetParameters(Op, frozen=True, tag="setParameters"):
-    """New values; without a value the parameter is undeclared."""
+    """Set new values; a parameter without a value is undeclared."""
 
     parameters: list[FoxgloveParameter]
     id: str | None = None
 
 
 class SubscribeParameterUpdates(Op, frozen=True, tag="subscribeParameterUpdates"):
-    """Values whenever they change."""
+    """Request the values whenever they change."""
 
     parameter_names: list[str] = []
 
 
 class UnsubscribeParameterUpdates(Op, frozen=True, tag="unsubscribeParameterUpdates"):
-    """No more of them."""
+    """Stop requesting them."""
 
     parameter_names: list[str] = []
 
 
 class SubscribeConnectionGraph(Op, frozen=True, tag="subscribeConnectionGraph"):
-    """The nodes that publish, subscribe and serve."""
+    """Request the nodes that publish, subscribe and serve."""
 
 
 class UnsubscribeConnectionGraph(Op, frozen=True, tag="unsubscribeConnectionGraph"):
-    """No more of that."""
+    """Stop requesting them."""
 
 
 ClientOp: TypeAlias = (
@@ -162,7 +162,7 @@ def op_of(frame: str, most_parts: int) -> Op:
     """Return the op in a text frame.
 
     Raises:
-        MessageError: the frame is not an op that clients send.
+        MessageError: the frame is not an op of a client.
     """
     try:
         octets = frame.encode()
@@ -182,7 +182,7 @@ def op_frame(op: str, fields: Mapping[str, Any]) -> str:
 
 
 class ClientMessage(NamedTuple):
-    """A message that a client publishes."""
+    """A message published by a client."""
 
     channel_id: int
     data: memoryview
@@ -207,7 +207,7 @@ class PlaybackRequest(NamedTuple):
 
 
 Asked: TypeAlias = Op | ClientMessage | ServiceCall | PlaybackRequest
-"""A frame of a client, decoded."""
+"""A decoded frame of a client."""
 
 MESSAGE: Final = struct.Struct("<BI")
 CALL: Final = struct.Struct("<BIII")
@@ -215,10 +215,10 @@ PLAYBACK: Final = struct.Struct("<BBfBQI")
 
 
 def binary_of(frame: bytes) -> ClientMessage | ServiceCall | PlaybackRequest:
-    """Return a binary frame of a client, decoded.
+    """Decode a binary frame of a client.
 
     Raises:
-        MessageError: the frame has another form.
+        MessageError: the frame is malformed.
     """
     opcode = frame[:1]
     try:
@@ -235,8 +235,8 @@ def binary_of(frame: bytes) -> ClientMessage | ServiceCall | PlaybackRequest:
             request_id = text_at(frame, PLAYBACK.size, length)
             return PlaybackRequest(bool(command), rate, seek_ns if has_seek else None, request_id)
     except struct.error as error:
-        raise MessageError("frame", f"its {len(frame)} bytes end too early: {error}") from None
-    raise MessageError("frame", f"it begins with {opcode!r}, which no frame of a client does")
+        raise MessageError("frame", f"it has only {len(frame)} bytes: {error}") from None
+    raise MessageError("frame", f"its opcode {opcode!r} is unknown")
 
 
 def text_at(frame: bytes, start: int, length: int) -> str:
@@ -247,7 +247,7 @@ def text_at(frame: bytes, start: int, length: int) -> str:
     """
     piece = frame[start : start + length]
     if len(piece) < length:
-        raise MessageError("frame", f"its {len(frame)} bytes end within a text of {length}")
+        raise MessageError("frame", f"its {len(frame)} bytes end within a text of {length} bytes")
     try:
         return piece.decode()
     except UnicodeDecodeError as error:
@@ -265,12 +265,12 @@ def message_frame(
 
 
 def time_frame(time_ns: int) -> bytes:
-    """Return a frame with the current time."""
+    """Return a frame with the time."""
     return struct.pack("<BQ", 2, time_ns)
 
 
 def response_frame(call: ServiceCall, data: bytes) -> bytes:
-    """Return the frame of a service's response, in the encoding of its request."""
+    """Return the frame of a service's response, encoded like its request."""
     encoding = call.encoding.encode()
     head = struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding))
     return head + encoding + data
@@ -291,7 +291,7 @@ def playback_frame(
 
 
 def shown_parameter(name: str, parameter: Parameter) -> dict[str, Any]:
-    """Return a parameter as clients get it; without a value if it is not set.
+    """Return a parameter in the form sent to clients; without a value if it is not set.
 
     Args:
         name: Its name for clients.

@@ -23,16 +23,16 @@ EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
 MOST_FOLLOWED: Final = 10_000
-"""Most parameters that a client follows."""
+"""Maximum number of parameters that a client may follow."""
 
 MOST_CHARACTERS: Final = 1000
-"""The longest name of a parameter that a client follows, in characters."""
+"""The longest name of a followed parameter, in characters."""
 
 
 class Parameters:
     """The parameters that one client reads, sets and follows.
 
-    A client names a parameter by its node, a dot and its own name: names of nodes have no dots.
+    A client names a parameter by its node, a dot and its own name: node names contain no dots.
 
     Args:
         session: The session of the client.
@@ -45,11 +45,11 @@ class Parameters:
         self._events: Subscribed | None = None
 
     async def get(self, names: Sequence[str], request_id: str | None) -> None:
-        """Send parameters; without names those of all nodes.
+        """Send parameters; without names, those of all nodes.
 
         Raises:
-            MessageError: a name is not that of a node, a dot, and a parameter; or a node, or the
-                policy, does not tell some of them. The others are sent.
+            MessageError: a name does not consist of a node, a dot and a parameter; or a node or the
+                policy withholds some of them. The others are sent.
         """
         failures = Failures()
         wanted = by_node(names, failures) if names else await self._session.parameters.all_names()
@@ -77,11 +77,11 @@ class Parameters:
     async def set(
         self, parameters: Sequence[frames.FoxgloveParameter], request_id: str | None
     ) -> None:
-        """Set parameters, and send their values if the client has asked for them.
+        """Set parameters, and send their values if the client requested that.
 
         Raises:
-            MessageError: a name is not that of a node, a dot, and a parameter; or some parameters
-                cannot be set. The others are.
+            MessageError: a name does not consist of a node, a dot and a parameter; or some
+                parameters cannot be set. The others are set.
         """
         arrived_ns = self._session.arrivals.arrival_ns()
         given = {parameter.name: parameter for parameter in parameters}
@@ -96,7 +96,7 @@ class Parameters:
             allowed = self._seen(node, allowed, failures)
             if not allowed:
                 continue
-            with failures.of(node, TimeoutError):  # then the node is not asked again
+            with failures.of(node, TimeoutError):  # then the node is not asked twice
                 found = await self._session.parameters.get(node, allowed)
                 told += [f"{node}.{name}" for name in allowed]
                 for name in allowed:
@@ -107,7 +107,7 @@ class Parameters:
             if told:
                 with failures.of("getParameters"):
                     await self.get(told, request_id)
-            else:  # without names, `get` would tell all
+            else:  # without names, `get` would send all
                 self._send([], request_id)
         failures.tell("setParameters")
 
@@ -126,12 +126,12 @@ class Parameters:
             raise MessageError(name, result.reason)
 
     async def follow(self, names: Sequence[str]) -> None:
-        """Send parameters whenever they change; without names all of them.
+        """Send parameters whenever they change; without names, all of them.
 
         Raises:
             RefusedError: the policy refuses to subscribe to the events of parameters.
-            MessageError: there are too many names; or some are not those of a node, a dot, and a
-                parameter, and the others are followed.
+            MessageError: there are too many names; or some do not consist of a node, a dot and a
+                parameter, while the others are followed.
         """
         if len(self._followed) + len(names) > MOST_FOLLOWED or any(
             len(name) > MOST_CHARACTERS for name in names
@@ -148,7 +148,7 @@ class Parameters:
         failures.tell("subscribeParameterUpdates")
 
     def unfollow(self, names: Iterable[str]) -> None:
-        """Send these no more; without names none."""
+        """Stop sending these parameters; without names, stop sending any."""
         wanted = set(names)
         self._followed -= wanted or set(self._followed)
         self._follows_all = self._follows_all and bool(wanted)
@@ -157,7 +157,7 @@ class Parameters:
             self._events = None
 
     def forget(self, ended: list[Subscribed]) -> None:
-        """Forget the parameters that the client follows, if the policy has ended that."""
+        """Forget the followed parameters if the policy has ended that."""
         if self._events in ended:
             self._events, self._follows_all = None, False
             self._followed.clear()
@@ -181,14 +181,14 @@ class Parameters:
 
 
 class Failures:
-    """What has failed of a request about several parameters; the others have succeeded."""
+    """The failures within a request about several parameters; the others have succeeded."""
 
     def __init__(self) -> None:
         self._texts: list[str] = []
 
     @contextlib.contextmanager
     def of(self, subject: str, *others: type[Exception]) -> Iterator[None]:
-        """Keep the error of the block: one of aionode's own, or of `others`."""
+        """Record an error raised in the block: one of aionode's own, or of `others`."""
         kinds: tuple[type[Exception], ...] = (AionodeError, *others)
         try:
             yield
@@ -203,19 +203,19 @@ class Failures:
         """Raise if anything has failed.
 
         Raises:
-            MessageError: it has.
+            MessageError: something has failed.
         """
         if self._texts:
             raise MessageError(request, "; ".join(self._texts))
 
 
 def by_node(names: Iterable[str], failures: Failures) -> dict[str, list[str]]:
-    """Return the names of parameters by their nodes; one that has no dot is a failure."""
+    """Group the names of parameters by node; a name without a dot is a failure."""
     names_of: dict[str, list[str]] = defaultdict(list)
     for name in names:
         node, dot, own = name.partition(".")
         if dot and own:
             names_of[node].append(own)
         else:
-            failures.add(repr(name[:MOST_CHARACTERS]), "it is not of the form /node.parameter")
+            failures.add(repr(name[:MOST_CHARACTERS]), "it does not have the form /node.parameter")
     return names_of

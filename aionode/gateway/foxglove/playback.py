@@ -1,4 +1,4 @@
-"""A bag's player under Foxglove's timeline, and the time that its clients are told."""
+"""A bag's player, controlled by Foxglove's timeline, and the time sent to clients."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ __all__ = ["Playback"]
 Begin: TypeAlias = Callable[..., None]
 
 PERIOD_SEC: Final = 0.05
-"""Time between two messages of the time while a player plays."""
+"""Time between two time messages while a player plays."""
 
 
 class Playback:
     """The player, as one client sees and controls it.
 
-    It controls the player through the services of the player's node, so that the policy decides
-    about each of them.
+    It controls the player through the services of the player's node, so that the policy applies to
+    each of them.
 
     Args:
         session: The session of the client.
@@ -41,12 +41,12 @@ class Playback:
 
     @property
     def capabilities(self) -> list[str]:
-        """The capabilities of this server that a player adds."""
+        """The server capabilities that a player adds."""
         return [] if self._player is None else ["playbackControl"]
 
     @property
     def range(self) -> dict[str, Any]:
-        """From when to when there is a recording."""
+        """The start and end of the recording."""
         if self._player is None:
             return {}
         return {
@@ -145,6 +145,6 @@ def clock_frame(received: Received) -> bytes:
 
 
 def seconds(time_ns: int) -> dict[str, int]:
-    """Return a time as the protocol has it in JSON."""
+    """Return a time in the protocol's JSON form."""
     sec, nsec = divmod(time_ns, S_TO_NS)
     return {"sec": sec, "nsec": nsec}

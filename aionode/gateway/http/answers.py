@@ -1,4 +1,4 @@
-"""Bodies, errors and streams of HTTP, as the routes of `_http` need them."""
+"""Bodies, errors and streams of HTTP, for the routes."""
 
 from __future__ import annotations
 
@@ -46,15 +46,14 @@ __all__ = [
 EVENTS: Final = "text/event-stream"
 
 ALIVE: Final = b": alive\n\n"
-"""A comment of server-sent events, as a sign of life."""
+"""A comment in server-sent events that keeps the connection alive."""
 
 MOST_SEC: Final = 3600.0
 """The longest wait that a request may ask for, in seconds."""
 
 ALIVE_SEC: Final = 2.0
-"""The time between two signs of life in a stream, in seconds: proxies and firewalls cut silent
-connections, and the network reports a client that is gone only to a server that sends.
-"""
+"""The time between two keep-alive comments of a stream, in seconds: proxies and firewalls cut
+silent connections, and the network reports a client that is gone only to a server that sends."""
 
 CLIENT_GONE: Final = 499
 """The status of a request whose client has disconnected, as in nginx's log; nobody receives it."""
@@ -75,7 +74,7 @@ FAILURES: Final[tuple[tuple[type[BaseException], int, str], ...]] = (
     (TimeoutError, 504, "timeout"),
     (AionodeError, 500, "failed"),
 )
-"""The status and the code for other errors; the first that fits."""
+"""The status and code of other errors; the first match is used."""
 
 CODES: Final = {
     400: "bad_request",
@@ -90,23 +89,23 @@ CODES: Final = {
     503: "unavailable",
     504: "timeout",
 }
-"""The code for each status that the routes themselves give."""
+"""The code for each status that the routes themselves return."""
 
 
 # Answers
 
 
 def json_response(value: Any, status: int = 200) -> Response:
-    """Return an answer in JSON; bytes are JSON already."""
+    """Return an answer in JSON; bytes are taken as JSON."""
     text = value if isinstance(value, bytes) else msgspec.json.encode(value)
     return Response(text, status, HEADERS, "application/json")
 
 
 def error_of(error: Exception) -> tuple[int, str, str]:
-    """Return the status, code and text with which to answer an error.
+    """Return the status, code and text of the answer to an error.
 
     Raises:
-        Exception: `error`, if it is a mistake of aionode.
+        Exception: `error`, if it is a bug in aionode.
     """
     if isinstance(error, RefusedError):
         return STATUS[error.code], error.code, str(error)
@@ -114,7 +113,7 @@ def error_of(error: Exception) -> tuple[int, str, str]:
         return error.status_code, CODES.get(error.status_code, "failed"), error.detail
     for kind, status, code in FAILURES:
         if isinstance(error, kind):
-            return status, code, str(error) or "the time is over"
+            return status, code, str(error) or "the time limit has passed"
     raise error
 
 
@@ -122,7 +121,7 @@ def error_response(error: Exception) -> Response:
     """Return the answer to an error, in JSON.
 
     Raises:
-        Exception: `error`, if it is a mistake of aionode.
+        Exception: `error`, if it is a bug in aionode.
     """
     status, code, text = error_of(error)
     response = json_response({"code": code, "error": text}, status)
@@ -137,7 +136,7 @@ def error_response(error: Exception) -> Response:
 
 
 async def body_of(request: Request, timeout_sec: float) -> bytes:
-    """Return the body of a request; the door has limited its size.
+    """Return the body of a request; the door has already limited its size.
 
     Args:
         request: The request.
@@ -145,7 +144,7 @@ async def body_of(request: Request, timeout_sec: float) -> bytes:
 
     Raises:
         RefusedError: the body is too large.
-        HTTPException: it takes too long (408), or its client has gone.
+        HTTPException: it takes too long (408), or the client has gone.
     """
     try:
         async with asyncio.timeout(timeout_sec):
@@ -173,17 +172,17 @@ class Asked:
 
     @property
     def name(self) -> str:
-        """The name in the path, where a program may have put it with its slash behind ours."""
+        """The name in the path, which a program may have written with its leading slash."""
         return f"/{self.request.path_params['name'].lstrip('/')}"
 
     @property
     def type_name(self) -> str | None:
-        """The type that the query names."""
+        """The type named in the query."""
         return self.request.query_params.get("type")
 
     @property
     def accept(self) -> str:
-        """The media types that the caller takes."""
+        """The media types that the caller accepts."""
         return self.request.headers.get("accept", "")
 
     def lose_silent_client(self) -> None:
@@ -196,12 +195,12 @@ class Asked:
         """Return the JSON of the body.
 
         Raises:
-            HTTPException: it is no JSON (400), or does not say that it is (415): a page of another
-                origin could send such a body without asking.
+            HTTPException: it is not JSON (400), or is not declared as JSON (415): a page of another
+                origin could send such a body without a preflight request.
         """
         given = self.request.headers.get("content-type", "").partition(";")[0].strip().lower()
         if given != "application/json":
-            text = f"the body is {given or 'of no type'}; send application/json, as curl --json"
+            text = f"the body is {given or 'of no type'}; send application/json, as by curl --json"
             raise HTTPException(415, text)
         try:
             return decoded(self.body, self.session.rights.limits.frame_parts, "body")
@@ -209,10 +208,10 @@ class Asked:
             raise HTTPException(400, str(error)) from None
 
     def number(self, name: str, default: float, most: float) -> float:
-        """Return a number of the query, from 0 to `most`.
+        """Return a number from the query, between 0 and `most`.
 
         Raises:
-            HTTPException: it is none, or larger (400).
+            HTTPException: it is not a number in that range (400).
         """
         text = self.request.query_params.get(name)
         if text is None:
@@ -222,7 +221,7 @@ class Asked:
         except ValueError:
             number = math.nan
         if not 0 <= number <= most:
-            text = f"{name}={text[:40]!r}: a number from 0 to {most:g} is needed"
+            text = f"{name}={text[:40]!r}: use a number from 0 to {most:g}"
             raise HTTPException(400, text)
         return number
 
@@ -231,7 +230,7 @@ class Asked:
 
 
 def event(name: str, data: bytes, id_: str = "") -> bytes:
-    """Return a server-sent event; its data is JSON, which has no line breaks."""
+    """Return a server-sent event with JSON as data, which contains no line breaks."""
     head = f"event: {name}\n" if name else ""
     number = f"id: {id_}\n" if id_ else ""
     return b"".join((head.encode(), number.encode(), b"data: ", data, b"\n\n"))
@@ -239,7 +238,7 @@ def event(name: str, data: bytes, id_: str = "") -> bytes:
 
 @asynccontextmanager
 async def until_ended(session: Session) -> AsyncIterator[None]:
-    """Cancel the block when a session ends, since the gateway or the caller's rights do.
+    """Cancel the block when a session ends because the gateway or the caller's rights end.
 
     Raises:
         HTTPException: the session has ended (503).
@@ -254,20 +253,20 @@ async def until_ended(session: Session) -> AsyncIterator[None]:
             raise
         if session.end_reason:
             raise RefusedError("connection", session.end_reason, "too_many") from None
-        raise HTTPException(503, "the gateway ends, or its policy has changed") from None
+        raise HTTPException(503, "the gateway is stopping, or its policy has changed") from None
 
 
 class Stream(Response):
-    """A response without an end, whose chunks are sent as they arrive.
+    """A response without a length, whose chunks are sent as they arrive.
 
-    It ends with its session. The generator of the chunks is closed when the client goes.
+    It ends with its session. The generator of the chunks is closed when the client disconnects.
 
     Args:
         session: The session.
         chunks: The chunks.
         media_type: The media type of the whole response.
-        first: Is sent before them.
-        alive: Is sent as a sign of life; empty for none.
+        first: Sent before the chunks.
+        alive: Sent to keep the connection alive; empty for nothing.
     """
 
     def __init__(
@@ -289,7 +288,7 @@ class Stream(Response):
         self._alive = alive
 
     async def __call__(self, scope: Scope, _receive: Receive, send: Send) -> None:
-        """Send the chunks; none to a request that asks for the head. Cancelling closes them."""
+        """Send the chunks, or none for a HEAD request. Cancelling closes the generator."""
 
         async def put(chunk: Frame) -> None:
             data = chunk.encode() if isinstance(chunk, str) else chunk
@@ -298,7 +297,7 @@ class Stream(Response):
         head = {"status": self.status_code, "headers": self.raw_headers}
         async with aclosing(self._chunks):
             await send({"type": "http.response.start", **head})
-            if scope["method"] != "HEAD":  # otherwise the response would have no end
+            if scope["method"] != "HEAD":  # otherwise the response would never end
                 await self._send_chunks(put)
         await send({"type": "http.response.body", "body": b"", "more_body": False})
 
@@ -313,7 +312,7 @@ class Stream(Response):
                 living.cancel()
 
     async def _stay_alive(self, put: Callable[[Frame], Awaitable[None]]) -> None:
-        """Send a sign of life again and again."""
+        """Keep the connection alive while nothing else is sent."""
         while self._alive:
             try:
                 async with asyncio.timeout(ALIVE_SEC):

@@ -34,17 +34,17 @@ KINDS: Final = {
     "ActionServer": "action server",
     "Timer": "timer",
 }
-"""The entities with stats, by the names of their classes, and what they are called."""
+"""The classes of entities with stats, and the name of each in the metrics."""
 
 
 class Family(msgspec.Struct):
     """One metric, with a sample for each set of labels.
 
     Attributes:
-        name: Its name; those of counters end in ``_total``.
-        kind: What it is.
+        name: Its name; names of counters end in ``_total``.
+        kind: Its type.
         text: Its meaning, for people.
-        samples: The end of the name (for summaries), the labels and the value of each sample.
+        samples: The suffix of the name (for summaries), the labels and the value of each sample.
     """
 
     name: str
@@ -83,7 +83,7 @@ def lines(family: Family) -> Iterator[str]:
 
 
 def escaped(text: str) -> str:
-    """Return the value of a label as it is written between quotes."""
+    """Return the value of a label, escaped for quotes."""
     return text.replace("\\", "\\\\").replace("\n", "\\n").replace('"', '\\"')
 
 
@@ -92,14 +92,14 @@ def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> li
 
     Args:
         stats: Its counts.
-        sees: Returns whether the caller sees a topic of this name; its type is not told.
+        sees: Returns whether the caller sees a topic of this name; its type is not given.
     """
-    sessions = Family("aionode_gateway_sessions", "gauge", "Clients now, by the way in.")
+    sessions = Family("aionode_gateway_sessions", "gauge", "Connected clients, by protocol.")
     for kind, count in stats.sessions.items():
         sessions.add(count, way=kind)
     totals = [
-        ("refused", stats.refused, "What the policy has refused."),
-        ("audit_lost", stats.audit_lost, "Lines of the audit log that were not written."),
+        ("refused", stats.refused, "Requests refused by the policy."),
+        ("audit_lost", stats.audit_lost, "Audit log lines that were not written."),
     ]
     families = [sessions]
     for name, value, text in totals:
@@ -108,10 +108,10 @@ def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> li
     reasons = Family("aionode_gateway_refusals_total", "counter", "Refused, dropped or late.")
     for reason, count in stats.refusals.items():
         reasons.add(count, reason=reason)
-    queued = Family("aionode_gateway_sent", "gauge", "Frames sent to the clients there are.")
+    queued = Family("aionode_gateway_sent", "gauge", "Frames sent to the connected clients.")
     queued.add(stats.sent)
-    dropped = Family("aionode_gateway_dropped", "gauge", "Frames that clients were too slow for.")
-    received = Family("aionode_gateway_received", "gauge", "Messages of topics that clients want.")
+    dropped = Family("aionode_gateway_dropped", "gauge", "Frames dropped for slow clients.")
+    received = Family("aionode_gateway_received", "gauge", "Messages received for clients.")
     for family, by_topic in ((dropped, stats.dropped), (received, stats.received)):
         for topic, count in by_topic.items():
             if sees(topic, ""):
@@ -124,23 +124,23 @@ def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> li
 
 
 COUNTERS: Final = {
-    "published": "Messages that were published.",
-    "calls": "Requests that were sent.",
-    "received": "Messages, requests, ticks or goals that were handed to a callback or a reader.",
-    "dropped": "Messages, requests or ticks that a full queue or a slow reader has cost.",
-    "expired": "Messages that were older than their lifespan.",
-    "filtered": "Messages that did not pass a content filter.",
-    "lost": "Messages that are missing in the sequence numbers of publishers.",
-    "errors": "Callbacks that have raised, and calls that have failed.",
+    "published": "Messages published.",
+    "calls": "Requests sent.",
+    "received": "Messages, requests, ticks or goals passed to a callback or a reader.",
+    "dropped": "Messages, requests or ticks dropped by a full queue or a slow reader.",
+    "expired": "Messages older than their lifespan.",
+    "filtered": "Messages rejected by a content filter.",
+    "lost": "Messages missing in the sequence numbers of publishers.",
+    "errors": "Callbacks that raised, and calls that failed.",
 }
 """The counts of entities, by the attributes of their stats."""
 
 DURATIONS: Final = {
-    "queue_wait": "Time from the arrival to the start of the callback.",
-    "run_time": "Time from the start of a callback to its end, and of a call to its response.",
-    "blocking": "The longest stretch of each callback without an await.",
+    "queue_wait": "Time from arrival to the start of the callback.",
+    "run_time": "Time from the start of a callback to its end, and from a call to its response.",
+    "blocking": "The longest stretch of a callback without an await.",
 }
-"""The durations that entities measure, by the attributes of their stats."""
+"""The durations measured by entities, by the attributes of their stats."""
 
 
 def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> list[Family]:
@@ -150,7 +150,7 @@ def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> lis
         nodes: The nodes.
         sees: Returns whether the caller sees a topic, service or action of this name and type.
     """
-    running = Family("aionode_node_running", "gauge", "Whether the node calls callbacks.")
+    running = Family("aionode_node_running", "gauge", "Whether the node runs its callbacks.")
     counters = {
         name: Family(f"aionode_{name}_total", "counter", text) for name, text in COUNTERS.items()
     }
@@ -176,7 +176,7 @@ def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> lis
 def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str, str], list[Stats]]:
     """Return the stats of the entities that the caller sees, by kind and name.
 
-    Entities of one kind and name are one for Prometheus, which refuses the same labels twice.
+    Entities of one kind and name are merged, since Prometheus refuses duplicate labels.
     """
     entities: dict[tuple[str, str], list[Stats]] = {}
     for entity in list(core_of(node).entities):
@@ -190,13 +190,13 @@ def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str,
 
 
 def kind_of(entity: object) -> str | None:
-    """Return what an entity with stats is called; None for others."""
+    """Return the name of an entity's kind; None if it has no stats."""
     names = (cls.__name__ for cls in type(entity).__mro__)
     return next((KINDS[name] for name in names if name in KINDS), None)
 
 
 def name_and_type(entity: Any) -> tuple[str, str]:
-    """Return the full name of an entity, and that of its type; a timer has neither."""
+    """Return the full name of an entity and of its type; a timer has neither."""
     if hasattr(entity, "_endpoint"):
         return entity._endpoint.name, entity._endpoint.type_name
     if hasattr(entity, "action_type"):
@@ -205,7 +205,7 @@ def name_and_type(entity: Any) -> tuple[str, str]:
 
 
 def merged(several: Iterable[Distribution]) -> Distribution:
-    """Return durations of several entities as one."""
+    """Merge the durations of several entities."""
     together = Distribution()
     for durations in several:
         together._merge(durations._read(), durations.max_ns)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["may", "offers"]
 
 DESCRIBED_SEC: Final = 5.0
-"""Time for which nodes are asked for the types of a document, in seconds."""
+"""How long to ask nodes for the types of a document, in seconds."""
 
 VERBS: Final[dict[Kind, tuple[Verb, ...]]] = {
     "topic": ("subscribe", "publish"),

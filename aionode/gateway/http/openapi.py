@@ -1,7 +1,7 @@
 """The OpenAPI 3.1 document of the requests that one caller may send.
 
 It has a path for each topic, service, action and node that the policy lets the caller use, with the
-schemas of their messages, so that a generated client has a typed method for each of them.
+schemas of the messages, so that a generated client has a typed method for each of them.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 __all__ = ["Kind", "Offer", "openapi"]
 
 Kind: TypeAlias = Literal["topic", "service", "action", "node"]
-"""A kind of thing that a caller may use."""
+"""The kinds of things that a caller may use."""
 
 Schema = dict[str, Any]
 
 SENT: Final = ".sent"
-"""Ends the name of the schema of a message as clients send it, where that differs."""
+"""Suffix of the schema of a message as clients send it, where that differs."""
 
 LISTS: Final = {
     "topics": "The topics that the caller sees, with their types.",
@@ -48,8 +48,8 @@ ERROR: Final = {
     "title": "Error",
     "type": "object",
     "properties": {
-        "code": {"type": "string", "description": "What went wrong, as a word for programs."},
-        "error": {"type": "string", "description": "What went wrong, as a sentence for people."},
+        "code": {"type": "string", "description": "The kind of error, as a word for programs."},
+        "error": {"type": "string", "description": "The error, as a sentence for people."},
     },
     "required": ["code", "error"],
 }
@@ -65,23 +65,23 @@ VALUE: Final = {
 TIMEOUT: Final = {
     "name": "timeout_sec",
     "in": "query",
-    "description": "The longest wait, in seconds: 5 for a message, and as the gateway's limits "
-    "say for a response, unless it is given.",
+    "description": "The longest wait, in seconds; by default 5 for a message, and the "
+    "gateway's limit for a response.",
     "schema": {"type": "number", "exclusiveMinimum": 0},
 }
 
 CLIENT: Final = {
     "name": "client",
     "in": "query",
-    "description": "A name of the program's own choice, for one that commands a topic over more "
-    "than one connection.",
+    "description": "A name chosen by the program, needed if it commands a topic over "
+    "several connections.",
     "schema": {"type": "string", "maxLength": 100},
 }
 
 PERIOD: Final = {
     "name": "min_period_sec",
     "in": "query",
-    "description": "Seconds between two messages of a stream, at least; the newest of them waits.",
+    "description": "The least time between two messages, in seconds; the newest is sent.",
     "schema": {"type": "number", "minimum": 0, "default": 0.0},
 }
 
@@ -108,7 +108,7 @@ class Offer:
     Attributes:
         kind: What it is.
         name: Its full name.
-        verbs: What the policy lets the caller do with it, such as ``subscribe`` and ``publish``.
+        verbs: The uses that the policy allows the caller, such as ``subscribe`` and ``publish``.
         cls: The class of its type; None if no node describes it, and for a node.
     """
 
@@ -164,9 +164,9 @@ def operation(name: str, summary: str, responses: Schema, **more: Any) -> Schema
     """Return an operation with its responses, any of which may be an error.
 
     Args:
-        name: What it does with which name, such as ``publish/cmd_vel``: unique, as names of methods
+        name: The use and the name, such as ``publish/cmd_vel``: unique, as names of methods
             are made of it.
-        summary: What it does, for people.
+        summary: A description for people.
         responses: The answers to a request that succeeds.
         more: Other entries, such as ``parameters``.
     """
@@ -185,7 +185,7 @@ def content(media_type: str, schema: Schema, **others: Schema) -> Schema:
 
 
 def answer(schema: Schema, **others: Schema) -> Schema:
-    """Return the answers of an operation that succeeds with a body."""
+    """Return the success response of an operation, with a body."""
     return {"200": {"description": "Done.", **content("application/json", schema, **others)}}
 
 
@@ -200,7 +200,7 @@ def listing(name: str) -> Schema:
 
 
 def topic_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
-    """Return what the caller may do with a topic."""
+    """Return the operations of a topic."""
     message = component(offer.cls, schemas)
     operations: Schema = {}
     if "subscribe" in offer.verbs:
@@ -229,7 +229,7 @@ def topic_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
 
 
 def service_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
-    """Return the call of a service."""
+    """Return the operation that calls a service."""
     if "call" not in offer.verbs:
         return {}
     request, response = (
@@ -247,7 +247,7 @@ def service_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
 
 
 def action_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
-    """Return the goals of an action."""
+    """Return the operation that sends goals to an action."""
     if "goal" not in offer.verbs:
         return {}
     goal, result, feedback = (
@@ -276,14 +276,14 @@ def action_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
 
 
 def node_operations(offer: Offer, _schemas: dict[str, Schema]) -> Schema:
-    """Return the reading of a node's parameters."""
+    """Return the operation that reads a node's parameters."""
     values = {"type": "object", "additionalProperties": ref("Value")}
     text = f"The parameters of {offer.name}."
     return {"get": operation(f"get_parameters{offer.name}", text, answer(values))}
 
 
 def parameter_operations(offer: Offer) -> Schema:
-    """Return the setting of one parameter."""
+    """Return the operation that sets one parameter."""
     name = {"name": "parameter", "in": "path", "required": True, "schema": {"type": "string"}}
     done = {"204": {"description": "The parameter is set."}}
     text = f"Set a parameter of {offer.name}."
@@ -302,12 +302,12 @@ def ref(name: str) -> Schema:
 def component(
     cls: type[Message] | None, schemas: dict[str, Schema], *, is_sent: bool = False
 ) -> Schema:
-    """Return a reference to the schema of a message, which is added with those nested in it.
+    """Return a reference to the schema of a message, adding that schema and those nested in it.
 
     Args:
         cls: The class of the message; None if no node knows it.
-        schemas: The schemas that there are.
-        is_sent: Whether clients send the message: their numbers are none for which null stands.
+        schemas: The schemas so far.
+        is_sent: Whether clients send the message, whose numbers may then not be null.
     """
     if cls is None:
         return {"type": "object", "description": "No node describes this type."}
@@ -315,7 +315,7 @@ def component(
     name = type_name(cls).replace("/", ".") + (SENT if is_sent else "")
     if name not in schemas:
         schema = schemas[name] = json_schema(cls)
-        schema["title"] += SENT if is_sent else ""  # generators make names of it
+        schema["title"] += SENT if is_sent else ""  # generators derive names from it
         for field in fields(cls):
             shown = schema["properties"][field.name]
             schema["properties"][field.name] = in_json(field.type, shown, schemas, is_sent=is_sent)
@@ -327,8 +327,8 @@ def in_json(
 ) -> Schema:
     """Return the schema of a field in the JSON form of the gateway.
 
-    It differs from `json_schema` in three points: nested messages are references, the bytes of an
-    array are a text in Base64, and null stands for the NaN and the infinities of the robot.
+    It differs from `json_schema` in three points: nested messages are references, byte arrays are
+        Base64 text, and null stands for the NaN and the infinities of the robot.
     """
     notes = {key: shown[key] for key in ("description",) if key in shown}
     if type_.container != "single":

@@ -13,9 +13,9 @@ __all__ = ["set_parameter", "show_parameters"]
 
 
 def node_and_parameter(asked: Asked) -> tuple[str, str]:
-    """Return the node and the parameter that a path names; the parameter may be empty.
+    """Split a path into the node and the parameter that it names; the parameter may be empty.
 
-    Both may contain slashes, so the longest name of a node counts that is at the beginning.
+    Both may contain slashes, so the longest matching node name at the beginning is taken.
 
     Raises:
         HTTPException: it does not begin with the name of a node that the caller sees (404).
@@ -51,7 +51,7 @@ async def set_parameter(asked: Asked) -> Response:
 
 
 def plain(value: Any) -> Any:
-    """Return the value of a parameter, or of several by name, as JSON has it."""
+    """Return the value of a parameter, or of several by name, in JSON form."""
     if isinstance(value, dict):
         return {name: plain(item) for name, item in value.items()}
     if isinstance(value, bytes):

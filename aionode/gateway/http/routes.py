@@ -1,9 +1,9 @@
 """HTTP: the graph, topics, services, actions and parameters of the robot for curl and programs.
 
 Each request is a session of its own, which ends with its connection: a program that closes the
-stream of a goal cancels the goal. Only the lease of a command outlives the request, by its time to
-live: the next command before that has to come over the same connection, or with the same name of a
-client (``?client=``), to hold the topic further.
+stream of a goal cancels the goal. Only the lease of a command outlives its request, by its time to
+live: to keep the topic, the next command has to arrive within that time, over the same connection
+or with the same client name (``?client=``).
 """
 
 from __future__ import annotations
@@ -60,13 +60,14 @@ LONGEST_CLIENT: Final = 100
 """The longest name of a client, in characters."""
 
 NAMELESS: Final = (
-    "a program that opens a connection for each command shows by ?client=NAME that it is the same"
+    "a program that opens a connection for each command identifies itself by ?client=NAME"
 )
-"""Added where a request without a name is refused, as another one commands the topic."""
+"""Added when a request without a client name is refused because another client commands the
+topic."""
 
 EXPECTED: Final = {404, 503, 504}
-"""What a route answers of names that are not there, at the end, and when no message comes in time:
-nothing of the client is refused."""
+"""The codes of errors that are no refusal: unknown names, the end of the gateway, and no message in
+time."""
 
 Handler = Callable[[Asked], Awaitable[Response]]
 
@@ -143,14 +144,14 @@ def end_with(session: Session, ended: list[Subscribed]) -> None:
 
 
 class Caller(msgspec.Struct, frozen=True):
-    """The holder of topics that requests command, as the session of each ends with the request.
+    """The holder of topics commanded by requests, since the session of each ends with its request.
 
     Two programs may share an identity, so that alone does not make them the same holder.
 
     Attributes:
         identity: The client that has sent the requests.
-        client: Its own name for itself; empty without one.
-        connection: Without that name, what it has sent the requests over.
+        client: The name that it gives itself; empty without one.
+        connection: The connection of its requests, if it has no such name.
     """
 
     identity: Identity
@@ -159,7 +160,7 @@ class Caller(msgspec.Struct, frozen=True):
 
     @property
     def way(self) -> str:
-        """The way it is connected, for `Owner`."""
+        """How it is connected, for `Owner`."""
         return f"http as client {self.client!r}" if self.client else "another connection of http"
 
     def doubt(self) -> None:
@@ -167,17 +168,19 @@ class Caller(msgspec.Struct, frozen=True):
 
 
 def caller_of(request: Request, session: Session) -> Caller:
-    """Return who holds the topics that a request commands.
+    """Return the holder of the topics that a request commands.
 
-    A proxy may send the requests of several programs over one connection, so behind one that says
-    what it is each request is a caller of its own, unless it has a name.
+    A proxy may send the requests of several programs over one connection, so each request forwarded
+    by a known proxy is a caller of its own, unless it has a client name.
 
     Raises:
         HTTPException: the name is too long (400).
     """
     client = request.query_params.get("client", "")
     if len(client) > LONGEST_CLIENT:
-        raise HTTPException(400, f"client: {len(client)} characters, at most {LONGEST_CLIENT} fit")
+        raise HTTPException(
+            400, f"client: {len(client)} characters, at most {LONGEST_CLIENT} are allowed"
+        )
     connection: object = None
     if not client:
         connection = request.scope["state"].get("aionode_connection")
@@ -195,16 +198,16 @@ async def answer_http_error(request: Request, error: Exception) -> Response:
 
 
 async def answer_other_websocket(websocket: WebSocket) -> None:
-    """Refuse a WebSocket at a path where none is served."""
+    """Refuse a WebSocket at a path that serves none."""
     error = HTTPException(404, f"{no_path(websocket.url.path)} A WebSocket connects to / or /ws.")
     await websocket.send_denial_response(error_response(error))
 
 
 def no_path(path: str) -> str:
-    """Return what a client reads who asks for a path that does not exist."""
+    """Return the text for a client that requests a path that does not exist."""
     return (
-        f"{path[:200]}: the gateway has no such path. /openapi.json lists those that it has; a "
-        "proxy has to take away a prefix of its own, as nginx does if proxy_pass ends with a slash."
+        f"{path[:200]}: the gateway has no such path. /openapi.json lists its paths; a "
+        "proxy has to remove its own prefix, as nginx does if proxy_pass ends with a slash."
     )
 
 
@@ -219,7 +222,7 @@ class HttpApi:
         self._clients = clients
 
     async def openapi(self, asked: Asked) -> Response:
-        """Return the document of the requests that the caller may send; ``?all=1`` has all."""
+        """Return a document of all requests that the caller may send; ``?all=1`` omits nothing."""
         user_only = asked.request.query_params.get("all", "0") in {"0", "false", ""}
         offered = await offers(asked.session, user_only=user_only)
         version = importlib.metadata.version("aionode")
@@ -237,7 +240,7 @@ class HttpApi:
         return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)
 
     async def healthz(self, _request: Request) -> Response:
-        """Return whether the gateway's node runs: to all who reach it, as it says nothing else."""
+        """Return whether the gateway's node runs; anyone may ask, as it reveals nothing else."""
         ok = self._clients.node.is_running
         return json_response({"ok": ok}, 200 if ok else 503)
 
@@ -305,7 +308,7 @@ async def call(asked: Asked) -> Response:
 
 
 async def send_goal(asked: Asked) -> Response:
-    """Send a goal, and return its feedback and result as events, or its result alone as JSON.
+    """Send a goal, and return its feedback and result as events, or only its result as JSON.
 
     The goal ends with the connection.
     """
@@ -315,7 +318,7 @@ async def send_goal(asked: Asked) -> Response:
         async with asked.session.goal(asked.name, values, type_name=type_name) as goal:
             return json_response(outcome_of(goal, await goal.result()))
     events = goal_events(asked.session, asked.name, values, type_name)
-    accepted = await anext(events)  # a goal that is not accepted is answered without a stream
+    accepted = await anext(events)  # a rejected goal is answered without a stream
     return Stream(asked.session, events, EVENTS, first=accepted, alive=ALIVE)
 
 

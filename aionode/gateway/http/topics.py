@@ -34,7 +34,7 @@ __all__ = ["answer_topic"]
 PICTURES: Final = "multipart/x-mixed-replace"
 
 ANY_PICTURE: Final = "image/*"
-"""A JPEG, or a compressed image as it is."""
+"""A JPEG, or a compressed image unchanged."""
 
 MOST_WIDTH: Final = 8192
 
@@ -47,7 +47,7 @@ SUFFIXES: Final = {
     ".png": "image/png",
     ".mjpeg": PICTURES,
 }
-"""The media type for each end of a path, as an ``<img>`` of a page can name no other way."""
+"""The media type for each suffix of a path, which is the only way for an ``<img>`` to name one."""
 
 
 async def answer_topic(asked: Asked) -> Response:
@@ -90,9 +90,9 @@ def topic_and_form(asked: Asked) -> tuple[str, str]:
 
 
 def picture_type(accept: str) -> str | None:
-    """Return which picture a caller wants: JPEG, or PNG if it prefers that; None for neither.
+    """Return the picture format that a caller prefers: JPEG or PNG; None for no picture.
 
-    A browser lists whatever it can show, WebP as well, and prefers nothing by that.
+    A browser lists all formats that it can show, including WebP, without preferring one.
     """
     given = {}
     for entry in accept.split(","):
@@ -122,7 +122,8 @@ async def events(asked: Asked, topic: str) -> Response:
         asked.type_name,
         frame=as_event,
         key=topic,
-        # Messages that wait for their time are late: the newest is enough, unless more are wanted.
+        # Messages that wait for their time are late: the newest is enough, unless more are
+        # requested.
         depth=round(asked.number("depth", 1 if period_sec else 10, 1000)) or 1,
         min_period_sec=period_sec,
         prepare=prepare_json,
@@ -168,7 +169,7 @@ class Newest:
         return newest
 
     def put(self, received: Received) -> None:
-        """Keep a message; `Session.subscribe` calls this, and has no frame for the outbox."""
+        """Keep a message; called by `Session.subscribe`, for which it returns no frame."""
         self._received = received
         self._arrived.set()
 
@@ -198,10 +199,10 @@ class Newest:
 
 
 def picture_form(asked: Asked, media_type: str) -> Form:
-    """Return in which form the caller wants a picture.
+    """Return the form in which the caller wants a picture.
 
     Raises:
-        HTTPException: a parameter does not fit (400).
+        HTTPException: a parameter is invalid (400).
     """
     width = round(asked.number("width", 0.0, MOST_WIDTH))
     quality = None
@@ -217,11 +218,11 @@ async def picture_or_refusal(received: Received, form: Form) -> Picture:
     """Return the picture of an image.
 
     Raises:
-        HTTPException: it is no image (406), no picture can be made of it (422), or Pillow is not
-            installed (501).
+        HTTPException: it is not an image (406), it cannot be converted to a picture (422), or
+            Pillow is not installed (501).
     """
     if received.type_name not in IMAGE_TYPES:
-        text = f"{received.topic} has {received.type_name}, which is no picture"
+        text = f"{received.topic} has {received.type_name}, which is not an image"
         raise HTTPException(406, text)
     try:
         return await picture_of(received, form)
@@ -232,7 +233,7 @@ async def picture_or_refusal(received: Received, form: Form) -> Picture:
 
 
 async def pictures(asked: Asked, newest: Newest, form: Form) -> AsyncGenerator[Frame, None]:
-    """Yield the pictures of a topic, as many as the client takes; one that fails is the last."""
+    """Yield the pictures of a topic, as fast as the client reads them; a failed one is the last."""
     while True:
         try:
             picture = await picture_or_refusal(await newest.get(), form)

@@ -1,7 +1,7 @@
-"""TypeScript types of messages, services and actions, in the JSON form that the gateway speaks.
+"""TypeScript types of messages, services and actions, in the JSON form that the gateway uses.
 
 The text is a module of declarations, for a file such as ``robot.d.ts``. It has an interface for
-each message in a namespace for its package, and maps from the names of ROS to these interfaces.
+each message, in a namespace for its package, and maps from ROS names to these interfaces.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def typescript(
     """Return a TypeScript module of declarations.
 
     Args:
-        classes: Classes of messages, services and actions; nested messages are found by themselves.
+        classes: Classes of messages, services and actions; nested messages are found from them.
         topics: The type of each topic, as a map named ``Topics``; types without a class are left
             out of these maps.
         services: The type of each service, as ``Services``.
@@ -138,7 +138,7 @@ def interface_text(cls: type[Message]) -> str:
     lines.append(f"  interface {type_name(cls).rpartition('/')[2]} {{")
     for field in fields(cls):
         wide = {"int64", "uint64"} & {field.type.kind}
-        notes = ["Beyond 2**53 the last digits are lost in JavaScript."] if wide else []
+        notes = ["Beyond 2**53 JavaScript loses the last digits."] if wide else []
         lines += comment([described.get(field.name, ""), *notes], "    ")
         lines.append(f"    {field.name}: {type_text(field.type)};")
     return "\n".join([*lines, "  }", ""])
@@ -152,7 +152,7 @@ def constant_text(constant: Constant) -> str:
 
 def comment(texts: Iterable[str], indent: str) -> list[str]:
     """Return the lines of a comment; empty if there is no text."""
-    # A description must not be able to end the comment that it stands in.
+    # A description must not be able to end the comment that contains it.
     said = [re.sub(r"\*/", "* /", " ".join(text.split())) for text in texts if text]
     if len(said) < 2:
         return [f"{indent}/** {text} */" for text in said]
@@ -183,7 +183,7 @@ def map_text(name: str, entries: Mapping[str, str], known: Mapping[str, Any]) ->
 
 
 def reference(cls: Any) -> str:
-    """Return how a map refers to a class: a service and an action are objects of their parts."""
+    """Return how a map refers to a class; services and actions are objects of their parts."""
     parts = {role.lower(): dotted(type_name(part)) for role, part in parts_of(cls).items()}
     if "" in parts:
         return parts[""]

@@ -1,4 +1,4 @@
-"""An assistant for the robot: tools of the Model Context Protocol, bounded by the policy."""
+"""An assistant for the robot: tools of the Model Context Protocol, limited by the policy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The answers of tools: small enough for a model, as JSON, and errors that say what fits."""
+"""The answers of tools: JSON small enough for a model, and errors that name the valid options."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError, T
 __all__ = ["MOST_BYTES", "answer", "bounded", "failure"]
 
 MOST_BYTES: Final = 9_500
-"""The longest JSON of an answer, which it has twice: as text, and structured. Both are 20 kB."""
+"""The longest JSON of an answer. An answer contains it twice, as text and structured: 20 kB in
+all."""
 
 SIZES: Final = ((400, 4000), (150, 1500), (60, 600), (25, 250), (10, 100), (4, 40), (1, 20))
-"""How many entries and characters are left of long lists and texts, until the whole fits."""
+"""How many entries and characters of long lists and texts to keep; the next step is tried until all
+fits."""
 
 MOST_LEVELS: Final = 30
 """How deeply nested an answer may be."""
@@ -33,7 +35,7 @@ def answer(values: Mapping[str, Any], *, is_error: bool = False) -> types.CallTo
 
 
 def failure(error: Exception) -> types.CallToolResult:
-    """Return why a tool has failed, as the model reads it."""
+    """Return the error that tells the model why a tool has failed."""
     code = "failed"
     if isinstance(error, RefusedError | ToolError):
         code = error.code
@@ -53,17 +55,17 @@ def failure(error: Exception) -> types.CallToolResult:
 
 
 def bounded(values: Mapping[str, Any], most_bytes: int) -> dict[str, Any]:
-    """Return values with the ends of long lists and texts left out, so that their JSON fits."""
+    """Return values shortened so that their JSON fits, without the ends of long lists and texts."""
     fitting = {str(key): cut(value, *SIZES[0]) for key, value in values.items()}
     for items, characters in SIZES:
         fitting = {str(key): cut(value, items, characters) for key, value in values.items()}
         if len(msgspec.json.encode(fitting)) <= most_bytes:
             return fitting
-    return {"left_out": f"the answer has more than {most_bytes} bytes; ask for less of it"}
+    return {"left_out": f"the answer has more than {most_bytes} bytes; request less of it"}
 
 
 def cut(value: Any, items: int, characters: int, level: int = 0) -> Any:
-    """Return a value with lists and texts of a length at most, and how much of them is left out."""
+    """Return a value with lists and texts cut to a length, each with the number of what is cut."""
     if level > MOST_LEVELS:
         return "..."
     if isinstance(value, str):

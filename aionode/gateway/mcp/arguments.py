@@ -1,4 +1,4 @@
-"""The arguments of tools: their schemas, and what a model reads of one that does not fit."""
+"""The arguments of tools: their schemas, and errors that tell a model how to correct them."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ __all__ = ["Arguments", "Nothing", "fitting", "meant", "schema_of"]
 ArgumentsT = TypeVar("ArgumentsT", bound="Arguments")
 
 MOST_NAMED: Final = 10
-"""Names that an error lists, where none is similar to what was given."""
+"""Number of names listed by an error if none is similar to the given one."""
 
 
 class Arguments(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The arguments of a tool; one that it does not have is an error."""
+    """The arguments of a tool; unknown arguments are an error."""
 
 
 class Nothing(Arguments, frozen=True):
@@ -37,10 +37,10 @@ def schema_of(cls: type[Arguments]) -> dict[str, Any]:
 
 
 def fitting(cls: type[ArgumentsT], values: Mapping[str, Any]) -> ArgumentsT:
-    """Return the arguments of a call.
+    """Convert the arguments of a call.
 
     Raises:
-        MessageError: one of them does not fit, is missing or unknown.
+        MessageError: one of them is invalid, missing or unknown.
     """
     unknown = [name for name in values if name not in cls.__struct_fields__]
     if unknown:
@@ -53,15 +53,15 @@ def fitting(cls: type[ArgumentsT], values: Mapping[str, Any]) -> ArgumentsT:
         problem, _, place = str(error).partition(" - at ")
         path = re.sub(r"^`\$\.?|`$", "", place) or "arguments"
         choices = schema_of(cls)["properties"].get(path, {}).get("enum")
-        fits = f"; one of {', '.join(choices)} fits" if choices else ""
+        fits = f"; use one of {', '.join(choices)}" if choices else ""
         raise MessageError(path, f"{problem}{fits}") from None
 
 
 def meant(name: object, known: Iterable[str]) -> str:
-    """Return what a name may have been meant for, or what there is, as the end of an error."""
+    """Return the end of an error about an unknown name: similar names, or those that exist."""
     names = list(known)
     close = difflib.get_close_matches(str(name), names, 3)
     if close:
         return f"; did you mean {' or '.join(close)}?"
     more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return f"; there is {', '.join(names[:MOST_NAMED])}{more}" if names else "; there is none"
+    return f"; use one of {', '.join(names[:MOST_NAMED])}{more}" if names else "; there are none"

@@ -1,4 +1,4 @@
-"""An assistant for the robot in a program, or behind a command's standard streams."""
+"""An assistant for the robot within a program, or behind a command's standard streams."""
 
 from __future__ import annotations
 
@@ -23,23 +23,24 @@ if TYPE_CHECKING:
 __all__ = ["Assistant"]
 
 LOOPBACK = Credentials(address="127.0.0.1", host="127.0.0.1")
-"""What a program of this host shows that shows nothing else."""
+"""The credentials of a program on this host that has no others."""
 
 
 class Assistant:
-    """Lets a model's client of MCP use a robot: ``async with Assistant(node) as assistant:``.
+    """Lets the MCP client of a model use a robot: ``async with Assistant(node) as assistant:``.
 
-    The tools, their limits and what they may reach are those of the policy; see `Policy`. It needs
+    The policy decides on the tools, their limits and what they may reach; see `Policy`. It needs
     the extra ``mcp``. For clients over HTTP, use `Gateway` with ``mcp=True``.
 
     Args:
-        node: The node by which the assistant takes part in the graph. The node has to run.
+        node: The node by which the assistant takes part in the graph. The node has to be running.
         policy: Who may do what; by default `Policy.default`, by which it only looks.
-        name: Which ``[[who]]`` of the policy the client is; by default what the policy says of
-            programs of this host.
+        name: The ``[[who]]`` of the policy for this client; by default that for programs on this
+            host.
         ask: Asks a person, where a rule of the policy has ``ask``, as for `Gateway`; by default the
             client asks its user, and if it cannot, the request is refused.
-        about: What the model is told of this robot: what it is for, and what to take care of.
+        about: A description of this robot for the model: what it is for, and what to be careful
+            about.
         bags: A folder of recordings of which the model gets summaries; empty for none.
 
     Raises:
@@ -47,7 +48,7 @@ class Assistant:
 
     Attributes:
         node: The node.
-        clients: The sessions of the clients, the policy that holds for them, and the robot.
+        clients: The sessions of the clients, their policy, and the robot.
     """
 
     def __init__(
@@ -73,11 +74,11 @@ class Assistant:
         return self._mcp.server
 
     def identity(self) -> Identity:
-        """Return who the client is, by the policy as it is now.
+        """Return the client's identity under the current policy.
 
         Raises:
             ConfigurationError: the policy has no client of the name (a ValueError).
-            RefusedError: the policy knows no programs of this host.
+            RefusedError: the policy has no entry for programs on this host.
         """
         if not self._name:
             return self.clients.policy.identify(LOOPBACK)
@@ -86,14 +87,16 @@ class Assistant:
             return identity
         known = ", ".join(who.name for who in self.clients.policy.who) or "none"
         raise ConfigurationError(
-            "assistant's name", self._name, f"no [[who]] of the policy has it; there is {known}"
+            "assistant's name",
+            self._name,
+            f"the policy has no [[who]] of this name; use one of {known}",
         )
 
     def _client(self) -> Identity:
-        """Return who the client of a request is.
+        """Return the identity of a request's client.
 
         Raises:
-            RefusedError: the policy, which may have changed, does not know it.
+            RefusedError: the policy, which may have changed, does not know the client.
         """
         try:
             return self.identity()
@@ -101,10 +104,10 @@ class Assistant:
             raise RefusedError("client", str(error), "unauthorized") from error
 
     async def __aenter__(self) -> Self:
-        """Begin; clients are served from now on.
+        """Start; clients are served from now on.
 
         Raises:
-            RuntimeError: the node does not run.
+            RuntimeError: the node is not running.
         """
         self.clients.check_node()
         async with AsyncExitStack() as stack:
@@ -120,9 +123,9 @@ class Assistant:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """End the calls under way: the stops of their leases are sent, their goals cancelled."""
+        """End the calls in progress: send the stops of their leases, and cancel their goals."""
         if isinstance(error, Exception):
-            kind = error = traceback = None  # the group of tasks would wrap the program's error
+            kind = error = traceback = None  # the task group would wrap the program's error
         await to_the_end(self._stack.__aexit__(kind, error, traceback))
 
     async def _end(self) -> None:
@@ -130,9 +133,10 @@ class Assistant:
         await self.clients.robot.commands.close()
 
     def tell(self, text: str) -> None:
-        """Tell clients that listen of an event, such as ``the battery is low``.
+        """Tell listening clients about an event, such as ``the battery is low``.
 
-        They read it in the resource ``robot://events``, with the warnings of the robot's log.
+        They read it from the resource ``robot://events``, together with the warnings of the robot's
+        log.
         """
         self._mcp.events.tell(text)
 

@@ -1,4 +1,4 @@
-"""One call of a tool: whose it is, and how its client hears what happens."""
+"""One call of a tool: its session, and how its client follows its progress."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ if TYPE_CHECKING:
 __all__ = ["Call", "ClientGoneError", "while_client_is_there"]
 
 LOOK_SEC: Final = 0.05
-"""The time between two looks whether the client is still connected, in seconds."""
+"""The time between two checks whether the client is still connected, in seconds."""
 
 PROGRESS_SEC: Final = 0.5
 """The least time between two reports of progress, in seconds."""
 
 
 class ClientGoneError(asyncio.CancelledError):
-    """The client of a call has disconnected: as with a cancel, there is nobody to answer."""
+    """The client of a call has disconnected: as after a cancellation, there is nobody to answer."""
 
 
 class Call:
     """One call of a tool.
 
     Args:
-        session: The session of the call, whose end gives back all that it has taken.
-        context: That of the request.
+        session: The session of the call, whose end releases everything that it has taken.
+        context: The SDK's context of the request.
         clients: All clients of the robot.
 
     Attributes:
         session: The session.
         clients: All clients of the robot.
-        outcome: What became of it, for the audit log.
+        outcome: The outcome of the call, for the audit log.
     """
 
     def __init__(self, session: Session, context: Any, clients: Clients) -> None:
@@ -66,13 +66,13 @@ class Call:
                 raise
 
     async def sleep(self, seconds: float) -> None:
-        """Wait by the steady clock of the robot."""
+        """Sleep by the steady clock of the robot."""
         await self.clients.robot.clock.sleep(seconds)
 
     async def report(self, done: float, total: float | None, text: str) -> None:
-        """Tell the client how far it is, if it wants to know: twice a second at most.
+        """Report progress to the client, if it has asked for it: at most twice a second.
 
-        A client that does not read, or is gone, holds up nothing.
+        A client that does not read, or has gone, delays nothing.
         """
         now_ns = self.session.steady_ns()
         if now_ns - self._reported_ns < PROGRESS_SEC * S_TO_NS or done <= self._progress:
@@ -87,12 +87,13 @@ class Call:
 async def while_client_is_there(context: Any, call: Call) -> AsyncIterator[None]:
     """Cancel the block when its client disconnects, or when its session ends.
 
-    By the revisions before 2026-07-28, a client that disconnects has cancelled nothing, and its
-    call goes on; but nobody is there any more who would stop the robot.
+    In protocol revisions before 2026-07-28, a client that disconnects has cancelled nothing, so its
+    call would continue; but nobody is left to stop the robot.
 
     Raises:
         ClientGoneError: the client has disconnected.
-        RefusedError: the session has ended: the gateway does, or the policy has changed.
+        RefusedError: the session has ended, because the gateway is stopping or the policy has
+            changed.
     """
     request = context.request
     is_watched = request is not None and context.protocol_version not in MODERN_PROTOCOL_VERSIONS
@@ -117,5 +118,5 @@ async def while_client_is_there(context: Any, call: Call) -> AsyncIterator[None]
             raise ClientGoneError from None
         if session.end_reason:
             raise RefusedError("connection", session.end_reason, "too_many") from None
-        reason = "the gateway ends, or its policy has changed"
+        reason = "the gateway is stopping, or its policy has changed"
         raise RefusedError("connection", reason, "not_allowed") from None

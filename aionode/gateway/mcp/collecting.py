@@ -1,4 +1,4 @@
-"""Messages of a topic as tools take them: the next ones, or what they were like over some time."""
+"""Messages of a topic as tools use them: the next ones, or statistics over some time."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ NUMBERS: Final = frozenset(
     {"float32", "float64", "bool", "char"}
     | {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
 )
-"""The kinds of fields that have numbers."""
+"""The types of fields that contain numbers."""
 
 MOST_PATHS: Final = 64
-"""Fields of a message whose numbers are counted."""
+"""The most fields of a message for which statistics are kept."""
 
 MOST_ELEMENTS: Final = 1000
-"""Messages in an array whose numbers are counted."""
+"""The most messages of an array for which statistics are kept."""
 
 
 class Arrivals:
-    """Keeps messages as they arrive, the newest ones.
+    """Keeps the newest messages as they arrive.
 
     Args:
         most: How many.
@@ -46,7 +46,7 @@ class Arrivals:
         self._arrived = asyncio.Event()
 
     def put(self, received: Received) -> None:
-        """Keep a message; `Session.subscribe` calls this, and has no frame for the outbox."""
+        """Keep a message; called by `Session.subscribe`, for which it returns no frame."""
         self.count += 1
         self._kept.append(received)
         self._arrived.set()
@@ -61,7 +61,7 @@ class Arrivals:
 
 @dataclass(slots=True)
 class Numbers:
-    """What the numbers of one field were like.
+    """Statistics of the numbers of one field.
 
     Attributes:
         count: How many finite ones there were.
@@ -120,12 +120,12 @@ def rounded(number: float) -> float:
 
 
 def numbers_of(message: Message) -> Iterator[tuple[str, Any]]:
-    """Yield the paths of the numbers in a message, and their values; not those of its stamps."""
+    """Yield the paths and values of the numbers in a message, except those of its stamps."""
     yield from list(walked(message, ""))[:MOST_PATHS]
 
 
 def walked(message: Message, prefix: str) -> Iterator[tuple[str, Any]]:
-    """Yield the numbers of a message whose own path is a prefix."""
+    """Yield the numbers of a message, with paths that begin with a prefix."""
     for each in fields(type(message)):
         value, path = getattr(message, each.name), f"{prefix}{each.name}"
         if each.type.nested is not None:
@@ -140,7 +140,7 @@ def walked(message: Message, prefix: str) -> Iterator[tuple[str, Any]]:
 
 
 def of_elements(messages: list[Message], path: str) -> Iterator[tuple[str, Any]]:
-    """Yield the numbers of the messages in an array, those of one field together."""
+    """Yield the numbers of the messages in an array; those of one field together."""
     together: dict[str, list[Any]] = {}
     for message in messages:
         for name, values in walked(message, f"{path}[]."):

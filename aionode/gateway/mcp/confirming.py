@@ -1,7 +1,7 @@
-"""Asking a person: what a rule of the policy with ``ask`` becomes for a client of MCP.
+"""Asking a person: how a policy rule with ``ask`` works for clients of MCP.
 
-Clients of the older revisions are asked by a request of their own. Those of 2026-07-28 get the
-question as the result of the call, and repeat the call with the answer.
+Clients of older revisions receive a request of its own. Those of 2026-07-28 receive the question as
+the result of the call, and repeat the call with the answer.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Asker", "Question", "Questions"]
 
 ASK_SEC: Final = 120.0
-"""The longest time for which a person is asked, in seconds."""
+"""How long to wait for a person's answer, in seconds."""
 
 MOST_QUESTIONS: Final = 1000
 """Questions that may wait for an answer."""
@@ -36,15 +36,15 @@ KEY: Final = "confirm"
 """The key of the question in a result."""
 
 SCHEMA: Final[dict[str, Any]] = {"type": "object", "properties": {}}
-"""The form of the question: nothing to fill in, only yes or no."""
+"""The form of the question: no fields, only yes or no."""
 
 
 class Question(Exception):  # noqa: N818  # no error: it ends a call, which comes again
-    """What a person has to be asked before the call is repeated.
+    """A question for a person, which has to be answered before the call is repeated.
 
     Attributes:
         text: The question.
-        subject: Who wants to do what, with which arguments, for which the answer counts.
+        subject: The client, the action and its arguments, to which the answer applies.
     """
 
     def __init__(self, text: str, subject: str) -> None:
@@ -54,13 +54,13 @@ class Question(Exception):  # noqa: N818  # no error: it ends a call, which come
 
 
 class Questions:
-    """The questions whose answers come with the repeated call; each may be answered once."""
+    """The questions whose answers arrive with the repeated call; each may be answered once."""
 
     def __init__(self) -> None:
         self._open: Recent[str, str] = Recent(MOST_QUESTIONS)
 
     def result(self, question: Question) -> types.InputRequiredResult:
-        """Return the result of a call that has to be repeated with the answer."""
+        """Return the result that makes the client repeat the call with the answer."""
         state = secrets.token_urlsafe(16)
         self._open.put(state, question.subject)
         params = types.ElicitRequestFormParams(message=question.text, requested_schema=SCHEMA)
@@ -68,9 +68,9 @@ class Questions:
         return types.InputRequiredResult(input_requests={KEY: request}, request_state=state)
 
     def answer(self, params: types.CallToolRequestParams, subject: str) -> bool | None:
-        """Return the answer that a repeated call has for a question; None if it has none.
+        """Return the answer that a repeated call contains for a question; None if it has none.
 
-        An answer to any other question, such as one about other arguments, is none.
+        An answer to another question, such as one about different arguments, does not count.
         """
         if params.request_state is None or not params.input_responses:
             return None
@@ -81,13 +81,13 @@ class Questions:
 
 
 class Asker:
-    """Asks a person about one call; a yes holds for the rest of that call.
+    """Asks a person about one call; a yes is valid for the rest of that call.
 
     Args:
-        context: That of the request.
-        params: Its parameters, which may have the answer.
-        questions: Those that wait for an answer.
-        ask: The program's own way to ask; None to have the client ask its user.
+        context: The SDK's context of the request.
+        params: The parameters of the request, which may contain the answer.
+        questions: The questions that wait for an answer.
+        ask: The program's own way to ask; None if the client should ask its user.
     """
 
     def __init__(
@@ -127,14 +127,14 @@ class Asker:
         return said
 
     async def _asked(self, identity: Identity, verb: Verb, name: str, message: Any) -> bool:
-        """Have the client ask its user.
+        """Make the client ask its user.
 
         Raises:
             Question: the call has to be repeated with the answer.
         """
         text = question(identity, verb, name, message)
         if self._context.protocol_version in MODERN_PROTOCOL_VERSIONS:
-            # The arguments as the client writes them: a message may have got the time of its stamp.
+            # The arguments as the client wrote them; the message may already have been stamped.
             asked = [identity.name, verb, name, self._params.name, self._params.arguments]
             subject = json.dumps(asked, sort_keys=True)
             said = self._questions.answer(self._params, subject)
@@ -144,7 +144,7 @@ class Asker:
         return await self._elicited(text)
 
     async def _elicited(self, text: str) -> bool:
-        """Ask by a request to the client; one that answers with an error has not said yes."""
+        """Ask by a request to the client; an error in answer does not count as yes."""
         try:
             async with asyncio.timeout(ASK_SEC):
                 answered = await self._context.session.elicit_form(
@@ -156,6 +156,6 @@ class Asker:
 
 
 def question(identity: Identity, verb: Verb, name: str, message: Any) -> str:
-    """Return what a person is asked: who wants to do what, with which values."""
+    """Return the question for a person: who wants to do what, with which values."""
     given = "" if message is None else f" with {shortened(message)}"
     return escaped(f"Allow {identity.name} to {verb} {name}{given}?")

@@ -1,4 +1,4 @@
-"""What happens to the robot, for clients that listen: its warnings, and what its program tells."""
+"""Events of the robot for listening clients: warnings of its log, and what its program reports."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 __all__ = ["EVENTS", "Events"]
 
 EVENTS: Final = "robot://events"
-"""The resource with the events."""
+"""The resource that lists the events."""
 
 MOST_EVENTS: Final = 100
-"""Events that are kept, the newest ones."""
+"""Number of events that are kept; the newest ones."""
 
 MOST_TEXT: Final = 500
 """The longest text of an event, in characters."""
 
 MOST_SESSIONS: Final = 1000
-"""Sessions of the older revisions that are told of changes, the newest ones."""
+"""Number of sessions of older revisions that are notified of changes; the newest ones."""
 
 PERIOD_SEC: Final = 0.5
-"""The least time between two notifications, in seconds: clients then read what there is."""
+"""The least time between two notifications, in seconds; clients then read all new events."""
 
 WARNING: Final = 30
 LEVELS: Final = {30: "warn", 40: "error", 50: "fatal"}
@@ -50,13 +50,13 @@ LOG: Final = "/rosout"
 
 
 class Events:
-    """Keeps what happens, and tells clients that there is something new.
+    """Keeps the events, and tells clients when there are new ones.
 
     Args:
         clients: All clients of the robot.
 
     Attributes:
-        listen: Serves those who listen by the newest revision.
+        listen: Serves clients that listen by the newest revision.
     """
 
     def __init__(self, clients: Clients) -> None:
@@ -70,22 +70,22 @@ class Events:
         self._leave: Callable[[], None] | None = None
 
     def tell(self, text: str, level: str = "info", source: str = "") -> None:
-        """Keep an event, and have clients read it."""
+        """Keep an event, and notify clients of it."""
         time = round(self._clients.robot.time_base.system_ns() / 1e9, 3)
         event = {"time": time, "level": level, "source": source, "text": text[:MOST_TEXT]}
         self._kept.append(event)
         self._happened.set()
 
     def seen(self, *, with_log: bool) -> list[dict[str, Any]]:
-        """Return the events, the oldest first.
+        """Return the events, oldest first.
 
         Args:
-            with_log: Whether those of the robot's log are among them.
+            with_log: Whether to include those of the robot's log.
         """
         return [event for event in self._kept if with_log or not event["source"]]
 
     def follow_log(self) -> None:
-        """Keep the warnings of the robot's log from now on, and those that its nodes still have."""
+        """Keep the warnings of the robot's log from now on, and those that its nodes still hold."""
         if self._leave is None:
             self._leave = self._clients.robot.feeds.add(LOG, Log, None, self._take)
 
@@ -97,23 +97,23 @@ class Events:
     # Clients of the older revisions
 
     def note(self, context: Any) -> None:
-        """Tell the client of a request of other tools from now on, if it is of an older one."""
+        """Notify an older revision's client of changes of its tools from now on."""
         if context.protocol_version not in MODERN_PROTOCOL_VERSIONS:
             self._sessions.put(id(context.session._connection), context.session)
 
     def subscribe(self, context: Any) -> None:
-        """Tell the client of a request of events from now on."""
+        """Notify the client of a request of events from now on."""
         self.follow_log()
         self._subscribed.put(id(context.session._connection), context.session)
 
     def unsubscribe(self, context: Any) -> None:
-        """Tell the client of a request of events no more."""
+        """Stop notifying the client of a request of events."""
         self._subscribed.pop(id(context.session._connection), None)
 
-    # Telling
+    # Notifying clients
 
     async def run(self) -> None:
-        """Tell clients of events, and of other tools, until it is cancelled."""
+        """Notify clients of events, and of changed tools, until cancelled."""
         try:
             async with asyncio.TaskGroup() as tasks:
                 tasks.create_task(self._tell_events())
@@ -148,7 +148,7 @@ class Events:
 
 
 async def reached(sending: Any) -> bool:
-    """Return whether a notification could be sent; a client may be gone, or not read."""
+    """Send a notification, and return whether it was sent; a client may be gone, or not read."""
     try:
         async with asyncio.timeout(PERIOD_SEC):
             await sending

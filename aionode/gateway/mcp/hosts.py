@@ -1,4 +1,4 @@
-"""How programs with language models are told of a server: what goes into their settings."""
+"""How to add a server to the settings of programs with language models."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import msgspec
 __all__ = ["HOSTS", "settings_for"]
 
 NAME: Final = "robot"
-"""How the server is called there."""
+"""The name of the server in their settings."""
 
 
 def settings_for(host: str, command: Sequence[str]) -> str:
-    """Return what makes a program start a server, as text with the place that it goes to.
+    """Return the settings that make a program start a server, as text, and where to put them.
 
     Args:
         host: A key of `HOSTS`.
@@ -26,7 +26,7 @@ def settings_for(host: str, command: Sequence[str]) -> str:
 
 
 def servers(key: str, **more: Any) -> Callable[[Sequence[str]], str]:
-    """Return what writes a server as JSON, under the key that a program has for all of them."""
+    """Return a function that writes a server as JSON, under a program's key for servers."""
 
     def make(command: Sequence[str]) -> str:
         server = {**more, "command": command[0], "args": list(command[1:])}
@@ -53,7 +53,7 @@ def of_codex(command: Sequence[str]) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text as TOML and JSON have it."""
+    """Return a text quoted as in TOML and JSON."""
     return msgspec.json.encode(text).decode()
 
 
@@ -73,4 +73,4 @@ HOSTS: Final[dict[str, tuple[str, Callable[[Sequence[str]], str]]]] = {
     "codex": ("Codex: ~/.codex/config.toml", of_codex),
     "zed": ("Zed: settings.json", of_zed),
 }
-"""For each program, where its settings are, and what writes them."""
+"""For each program, the place of its settings, and the function that writes them."""

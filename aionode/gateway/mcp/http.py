@@ -26,11 +26,11 @@ PATH: Final = "/mcp"
 
 
 class McpOverHttp:
-    """Serves MCP to the clients of a gateway, each of which is known by its requests.
+    """Serves MCP to the clients of a gateway, each of which is identified by its requests.
 
     Args:
         clients: The gateway.
-        about: What the owner of the robot says of it.
+        about: The owner's description of the robot.
         bags: The folder of the bags that may be read; empty for none.
 
     Attributes:
@@ -55,7 +55,7 @@ class McpOverHttp:
 
     async def run(self) -> None:
         """Keep the sessions of the older revisions, until `stop`."""
-        # In a task of its own: the SDK has to leave in the task in which it has entered.
+        # In a task of its own: the SDK has to be left in the task that entered it.
         async with self._manager.run(), asyncio.TaskGroup() as tasks:
             telling = tasks.create_task(self.mcp.run())
             self._has_started.set()
@@ -67,24 +67,24 @@ class McpOverHttp:
         await self._has_started.wait()
 
     def stop(self) -> None:
-        """End the sessions, and so the calls under way."""
+        """End the sessions, and thereby the calls in progress."""
         self._has_to_end.set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve one request; the door has let its client in."""
+        """Serve one request, whose client the door has let in."""
         identity = self._clients.policy.identify(scope["aionode.credentials"])
-        # A session of the SDK is of the identity that has begun it.
+        # A session of the SDK belongs to the identity that began it.
         token = AccessToken(token="", client_id=identity.name, scopes=[])  # none is needed
         scope["user"] = AuthenticatedUser(token)
-        # A client whose cable was cut tells nothing.
+        # A client whose cable was cut sends no sign of it.
         scope["state"]["aionode_connection"].lose_after(self._clients.policy.limits.client_lost_sec)
         await self._manager.handle_request(scope, receive, send)
 
 
 def nobody() -> Identity:
-    """Refuse a client without a request: all of a gateway have one.
+    """Refuse a client without a request: all clients of a gateway have one.
 
     Raises:
         RefusedError: always.
     """
-    raise RefusedError("client", "it has no request over HTTP", "unauthorized")
+    raise RefusedError("client", "it has not sent a request over HTTP", "unauthorized")

@@ -1,8 +1,8 @@
 """The tools that change something: commands, goals, calls and parameters; and the stop.
 
-What moves the robot ends with who asked for it. The end of a call ends its session, which sends the
-stops of leases and cancels goals; a call ends when it is cancelled, when its client disconnects, at
-the latest after the seconds that the policy allows, and when somebody calls `stop`.
+Every motion ends with its call. The end of a call ends its session, which sends the stops of leases
+and cancels goals; a call ends when it is cancelled, when its client disconnects, when somebody
+calls `stop`, and at the latest after the time that the policy allows.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ __all__ = ["CallService", "Do", "Move", "Publish", "SetParameter", "call_service
 __all__ += ["move", "publish", "run_goal", "run_service", "set_parameter", "stop"]
 
 RATE_HZ: Final = 20.0
-"""How often a command is repeated, in hertz, if its rule and lease take that."""
+"""How often a command is repeated, in hertz, if its rule and lease allow that."""
 
 LISTENERS_SEC: Final = 1.0
-"""The longest wait for a subscription that the graph shows to be matched, in seconds."""
+"""How long to wait until the subscriptions of a topic are matched, in seconds."""
 
 LONG: Final = 4000
 
@@ -58,14 +58,14 @@ class Publish(Arguments, frozen=True):
 
 
 async def publish(call: Call, given: Publish) -> types.CallToolResult:
-    """Publish one message; a topic with commands has `move`."""
+    """Publish one message; topics that carry commands have `move`."""
     session = call.session
     topic, type_name, decision = decided(session, given.topic)
     if decision.lease is not None:
         raise RefusedError(
             f"publish {topic}",
-            "it has commands, which the robot would follow without an end; use the tool `move`, "
-            "which ends with the stop",
+            "it carries commands, which the robot would follow without end; use the tool "
+            "`move`, which stops the robot at the end",
         )
     await session.advertise(topic, type_name)
     listeners = await listening(call, topic)
@@ -88,7 +88,7 @@ def decided(session: Session, name: str) -> tuple[str, str, Decision]:
 
 
 async def listening(call: Call, topic: str) -> int:
-    """Wait until the subscriptions of a topic are matched, and return how many there are."""
+    """Wait until the subscriptions of a topic are matched, and return their number."""
     publisher = call.session.publisher(topic)
     with suppress(TimeoutError):
         async with asyncio.timeout(LISTENERS_SEC):
@@ -101,22 +101,24 @@ class Move(Arguments, frozen=True):
 
     topic: TopicName
     message: Values
-    seconds: Annotated[float, Meta(gt=0, description="For how long; then the robot is stopped.")]
+    seconds: Annotated[
+        float, Meta(gt=0, description="For how long; the robot is stopped afterwards.")
+    ]
 
 
 async def move(call: Call, given: Move) -> types.CallToolResult:
-    """Repeat a command for some seconds, and send the stop, however it ends."""
+    """Repeat a command for some seconds, then send the stop, however the call ends."""
     session = call.session
     topic, type_name, decision = decided(session, given.topic)
     if decision.lease is None or decision.rule is None:
         raise RefusedError(
             f"move {topic}",
-            "its rule in the policy has no lease, which says how the motion stops; publish one "
-            "message with the tool `publish`, or have `lease` added to the rule",
+            "its rule in the policy has no lease, which defines how the motion stops; "
+            "publish one message with the tool `publish`, or ask for a `lease` in the rule",
         )
     check_seconds(given.seconds, session.rights.limits.move_sec, "move_sec")
     await session.advertise(topic, type_name)
-    # Before the time counts: the values, the person who says yes, and who listens.
+    # Before the time counts: check the values, ask the person, and wait for subscriptions.
     publisher = session.publisher(topic)
     message = await session.message_of(publisher.msg_type, given.message)
     await session.rights.confirm("publish", topic, type_name, message)
@@ -170,7 +172,7 @@ class Mover:
             async with motion.running(given.seconds):
                 while motion.seconds() < given.seconds:
                     if holder is not None and self._commands.holder(self._topic) is not holder:
-                        # The stop was sent, and no command may come after it.
+                        # The stop was sent, and no command may follow it.
                         self.problem = self._lost()
                         break
                     await session.publish(
@@ -191,14 +193,14 @@ class Mover:
             self.problem = self._lost() if error.code == "too_old" else error.reason
 
     def _lost(self) -> str:
-        """Return why the topic is commanded no more."""
+        """Return why the topic is no longer commanded."""
         holder = self._commands.holder(self._topic)
         if holder is not None:
             return f"{holder.identity.name} commands {self._topic} now"
         return "this computer was too busy, and the robot was stopped; try again"
 
     def how(self, motion: Motion) -> str:
-        """Return how the motion has ended, in words."""
+        """Return how the motion ended, in words."""
         if motion.stopped_by:
             self.problem = None
             return f"by {motion.stopped_by}"
@@ -206,15 +208,16 @@ class Mover:
 
 
 def check_seconds(seconds: float, most: float, limit: str) -> None:
-    """Refuse a time that is longer than the policy allows.
+    """Refuse a time longer than the policy allows.
 
     Raises:
-        RefusedError: it is; its code is ``out_of_limits``.
+        RefusedError: it is too long; the code is ``out_of_limits``.
     """
     if seconds > most:
         raise RefusedError(
             "seconds",
-            f"{seconds:g} s, at most {most:g} s fit, by {limit} of the policy; move in several "
+            f"{seconds:g} s, at most {most:g} s are allowed by {limit} of "
+            "the policy; move in several "
             "steps, and look in between",
             "out_of_limits",
         )
@@ -230,8 +233,9 @@ def period_of(lease: LeaseRule, rate_hz: float) -> float:
     if period_sec > lease.ttl_sec / 2:
         raise RefusedError(
             "move",
-            f"the rule allows {rate_hz:g} commands a second, and its lease of {lease.ttl_sec:g} s "
-            "needs more; have rate_hz or ttl_sec changed in the policy",
+            f"the rule allows {rate_hz:g} commands a second, but its lease of "
+            f"{lease.ttl_sec:g} s needs more; ask for another rate_hz or ttl_sec in "
+            "the policy",
         )
     return period_sec
 
@@ -282,7 +286,7 @@ async def do(call: Call, given: Do) -> types.CallToolResult:
 async def run_goal(
     call: Call, action: str, goal: Any, seconds: float | None
 ) -> types.CallToolResult:
-    """Send a goal, wait for its end, and report how far it is meanwhile."""
+    """Send a goal, wait for its end, and report progress meanwhile."""
     session = call.session
     most = session.rights.limits.goal_sec
     seconds = most if seconds is None else seconds
@@ -349,7 +353,7 @@ async def set_parameter(call: Call, given: SetParameter) -> types.CallToolResult
     """Set a parameter of a node."""
     result = await call.session.parameters.set_json(given.node, given.name, given.value)
     if not result.successful:
-        reason = result.reason or "the node has refused it, without a reason"
+        reason = result.reason or "the node refused it without a reason"
         raise ToolError(f"{given.node}:{given.name}", reason)
     return answer({"node": given.node, "name": given.name, "value": given.value})
 
@@ -358,7 +362,7 @@ async def set_parameter(call: Call, given: SetParameter) -> types.CallToolResult
 
 
 async def stop(call: Call, _given: Nothing) -> types.CallToolResult:
-    """End what the client moves, and what others move as far as the policy says so."""
+    """End the client's own motion, and the motion of others as far as the policy allows."""
     stopped = await call.clients.stopping.everywhere(call.session.rights)
     ended = sorted(f"{name} ({who})" for name, who in stopped.ended)
     moving = [{"name": name, "who": who} for name, who in sorted(stopped.moving)]

@@ -1,4 +1,4 @@
-"""Names: those of the robot that are its user's own, and those of the tools made of them."""
+"""The robot's names without infrastructure, and the names of the tools made from them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ __all__ = ["MOST_CHARACTERS", "allowed", "commands_of", "limits_of", "may", "rig
 __all__ += ["tool_name", "topic_of", "user_names"]
 
 MOST_CHARACTERS: Final = 40
-"""The longest name of a tool: some clients cut names at 64 characters, with a prefix of theirs."""
+"""The longest name of a tool: some clients cut names at 64 characters, including a prefix of
+theirs."""
 
 DIGITS: Final = 8
 """Digits of the hash at the end of a name that would be longer."""
@@ -30,7 +31,7 @@ VERBS: Final[dict[str, tuple[Verb, ...]]] = {
 
 
 def user_names(session: Session) -> dict[str, dict[str, list[str]]]:
-    """Return the names that a client sees and that are its user's own, with their types."""
+    """Return the names that a client sees, without infrastructure, and their types."""
     offered = session.graph.offered()
     return {
         "nodes": {name: [] for name in offered.nodes},
@@ -64,7 +65,7 @@ def limits_of(rule: Any) -> str:
         return ""
     parts = [
         f"{path} from {limit.min:g} to {limit.max:g}"
-        + (", others are replaced by the nearest" if limit.outside == "clamp" else "")
+        + (", other values are replaced by the nearest" if limit.outside == "clamp" else "")
         for path, limit in rule.fields.items()
     ]
     if rule.rate_hz < float("inf"):
@@ -85,7 +86,7 @@ def allowed(session: Session, kind: Literal["services", "actions"]) -> dict[str,
 
 
 def commands_of(session: Session) -> dict[str, str]:
-    """Return the topics that a client may move something by, with their types."""
+    """Return the topics on which a client may command a motion, with their types."""
     found = {}
     for topic, types_of in user_names(session)["topics"].items():
         decision = session.rights.decision("publish", topic, types_of[0])
@@ -95,11 +96,11 @@ def commands_of(session: Session) -> dict[str, str]:
 
 
 def topic_of(session: Session, name: str) -> str:
-    """Return the full name of a topic that is there.
+    """Return the full name of an existing topic.
 
     Raises:
         ToolError: there is none, or the client may not see it.
-        InvalidTopicNameException: it is no name (a ValueError).
+        InvalidTopicNameException: it is not a valid name (a ValueError).
     """
     topic = session.topic_name(name)
     if not session.graph.types_of(topic, "topic"):
@@ -111,9 +112,9 @@ def topic_of(session: Session, name: str) -> str:
 
 
 def tool_name(verb: str, name: str) -> str:
-    """Return the name of the tool for a service or action: always the same one, and of no other.
+    """Return the name of the tool for a service or action: always the same, and unique.
 
-    A slash becomes a hyphen, which no name in ROS has. A name that is too long ends in a hash.
+    A slash becomes a hyphen, which no ROS name contains. A name that is too long ends in a hash.
     """
     plain = f"{verb}_{name.removeprefix('/').replace('/', '-')}"
     if len(plain) <= MOST_CHARACTERS and re.fullmatch(r"[A-Za-z0-9_-]+", plain):

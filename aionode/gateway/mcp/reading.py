@@ -1,4 +1,4 @@
-"""The tools that look: names, messages, pictures, transforms, the log, and bags."""
+"""The tools that only look: names, messages, pictures, transforms, the log, and bags."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ SHORT: Final = 1500
 """The longest summary of one of several messages, in bytes."""
 
 QUIET_SEC: Final = 0.3
-"""After so many seconds without a line, the log is complete."""
+"""After so many seconds without a new line, the log is considered complete."""
 
 LEVELS: Final = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 
@@ -67,7 +67,7 @@ class List(Arguments, frozen=True):
 
 
 async def list_names(call: Call, given: List) -> types.CallToolResult:
-    """Return the names of the robot, as far as they are the user's own."""
+    """Return the names of the robot, without infrastructure."""
     await call.session.graph.turn()
     kinds: dict[str, Any] = user_names(call.session)
     chosen = {kind: names for kind, names in kinds.items() if given.kind in {"all", kind}}
@@ -91,7 +91,7 @@ class Describe(Arguments, frozen=True):
 
 
 async def describe(call: Call, given: Describe) -> types.CallToolResult:
-    """Return what there is to know about a name: types with their fields, nodes, and rights."""
+    """Return everything known about a name: types with their fields, nodes, and rights."""
     session, name = call.session, given.name
     if not name.startswith("/"):
         return answer({"type": name, **await type_description(session, name)})
@@ -167,12 +167,12 @@ async def read(call: Call, given: Read) -> types.CallToolResult:
 
 
 def shown(received: Received, most_bytes: int) -> dict[str, Any]:
-    """Return a message that has arrived, bounded in bytes."""
+    """Return a message that has arrived, limited in bytes."""
     return {"time": round(received.time_ns / 1e9, 3), **summarize(received.message, most_bytes)}
 
 
 def nothing_came(session: Session, topic: str, seconds: float) -> ToolError:
-    """Return the error for a topic without a message, which says who publishes it."""
+    """Return the error for a topic without a message, which names its publishers."""
     publishers = session.graph.users(EndpointKind.PUBLISHER, topic)
     who = f"it is published by {', '.join(publishers)}" if publishers else "no node publishes it"
     return ToolError(topic, f"no message within {seconds:g} s; {who}", "timeout")
@@ -193,11 +193,11 @@ class Watch(Arguments, frozen=True):
 
 
 class Seen:
-    """What the messages of a topic were like.
+    """Statistics of the messages of a topic.
 
     Attributes:
-        first: The first one; None before it.
-        last: The last one; None before it.
+        first: The first one; None if there was none.
+        last: The last one; None if there was none.
         count: How many there were.
     """
 
@@ -215,7 +215,7 @@ class Seen:
             self._numbers.setdefault(path, Numbers()).add(values)
 
     def fields(self, units: Mapping[str, str]) -> dict[str, Any]:
-        """Return what the numbers of each field were like, with their units by path."""
+        """Return the statistics of each field, with their units by path."""
         found = {path: each.summary() for path, each in self._numbers.items()}
         for path, unit in units.items():
             for name, summary in found.items():
@@ -225,7 +225,7 @@ class Seen:
 
 
 async def watch(call: Call, given: Watch) -> types.CallToolResult:
-    """Return what the messages of a topic were like over some time."""
+    """Return the statistics of a topic's messages over some time."""
     session, seen = call.session, Seen()
     topic = topic_of(session, given.topic)
     arrivals = await subscribed(session, topic, 1000)
@@ -351,14 +351,14 @@ async def transform(call: Call, given: Transform) -> types.CallToolResult:
                 await came.wait()
     frames = buffer._getFrameStrings()
     if not frames:
-        problem = "no transforms came on /tf and /tf_static"
+        problem = "no transforms were received on /tf and /tf_static"
     missing = [frame for frame in (given.target, given.source) if frame not in frames]
     hint = meant(missing[0], frames) if missing and frames else ""
     raise ToolError(f"{given.target} to {given.source}", f"{problem}{hint}", "not_found")
 
 
 def described(stamped: Any) -> dict[str, Any]:
-    """Return a transform with its heading, which is what most ask for."""
+    """Return a transform together with its heading, which most callers want."""
     import math  # few clients ask for a transform
 
     rotation = stamped.transform.rotation
@@ -430,7 +430,7 @@ async def get_parameters(call: Call, given: GetParameters) -> types.CallToolResu
 
 
 def plain(value: Any) -> Any:
-    """Return the value of a parameter as JSON has it."""
+    """Return the value of a parameter in JSON form."""
     if isinstance(value, bytes):
         return list(value)
     if hasattr(value, "tolist"):
@@ -439,7 +439,7 @@ def plain(value: Any) -> Any:
 
 
 def known_node(session: Session, node: str) -> None:
-    """Refuse the name of a node that is not there.
+    """Refuse the name of a node that does not exist.
 
     Raises:
         ToolError: there is none.
@@ -458,7 +458,7 @@ class Bag(Arguments, frozen=True):
 
 
 class Bags:
-    """The bags of one folder, the only files of the robot that an assistant reads.
+    """The bags of one folder, the only files of the robot that an assistant may read.
 
     Args:
         folder: The folder.
@@ -468,12 +468,12 @@ class Bags:
         self._folder = Path(folder).resolve()
 
     async def summary(self, call: Call, given: Bag) -> types.CallToolResult:
-        """Return what is in a bag, or which bags there are."""
+        """Return the contents of a bag, or the names of the bags."""
         call.session.rights.decide("see", "/bags", "")
         return answer(await run_in_thread(self._summary, given.name))
 
     def _summary(self, name: str) -> dict[str, Any]:
-        """Return what is in a bag. It is called in a thread.
+        """Return the contents of a bag. Called in a thread.
 
         Raises:
             MessageError: there is no such bag in the folder.

@@ -31,7 +31,7 @@ WAIT_SEC: Final = 5.0
 """The longest wait for a message of a topic, in seconds."""
 
 PROMPT: Final = types.Prompt(
-    name="how_to_move", description="How this robot moves, and what it may be asked to do."
+    name="how_to_move", description="How this robot moves, and what you may ask it to do."
 )
 
 
@@ -48,7 +48,7 @@ def resources_of(session: Session) -> list[types.Resource]:
         types.Resource(uri=ABOUT, name="about", description="What this robot is.",
                        mime_type="text/plain"),
         types.Resource(uri=EVENTS, name="events", mime_type=JSON,
-                       description="What has happened to the robot: its newest warnings."),
+                       description="Recent events of the robot: its newest warnings."),
         *topics,
     ]  # fmt: skip
 
@@ -69,7 +69,7 @@ async def read_resource(
     """Return a resource.
 
     Raises:
-        ToolError: there is none of that address, or no message came.
+        ToolError: there is no resource with that address, or no message came.
         RefusedError: the policy does not allow to read it.
         InterfaceNotFoundError: nobody knows the type.
     """
@@ -85,7 +85,7 @@ async def read_resource(
     elif uri.startswith(f"{TOPIC}/"):
         values = await newest(session, unquote(uri.removeprefix(TOPIC)))
     else:
-        raise ToolError(uri[:200], "there is no such resource; list them", "not_found")
+        raise ToolError(uri[:200], "there is no such resource; list the resources", "not_found")
     text = msgspec.json.encode(bounded(values, 2 * MOST_BYTES)).decode()
     return types.TextResourceContents(uri=uri, text=text, mime_type=JSON)
 
@@ -107,7 +107,7 @@ async def newest(session: Session, name: str) -> dict[str, Any]:
 
 
 def how_to_move(session: Session) -> str:
-    """Return how the robot moves, by what the policy lets a client do."""
+    """Return how the robot moves, according to what the policy lets a client do."""
     rights, lines = session.rights, []
     for topic, type_name in commands_of(session).items():
         limits = limits_of(rights.decision("publish", topic, type_name).rule)
@@ -120,7 +120,7 @@ def how_to_move(session: Session) -> str:
     return (
         f"With this robot you may do the following.\n{what}\n\n"
         f"A move lasts {rights.limits.move_sec:g} s at most, a goal {rights.limits.goal_sec:g} s, "
-        "and both end when their call is given up. Move in small steps, and look in between with "
+        "and both end when their call is cancelled. Move in small steps, and look in between with "
         "`look`, `read` and `transform`. When something is wrong, call `stop`, which is always "
         "allowed, and then say so."
     )

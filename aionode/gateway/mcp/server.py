@@ -1,4 +1,4 @@
-"""The server of MCP: requests of clients become calls of tools, each with a session of its own."""
+"""The MCP server: turns requests of clients into calls of tools, each with a session of its own."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ if TYPE_CHECKING:
 __all__ = ["McpServer"]
 
 WAY: Final = "mcp"
-"""The way in, for the audit log."""
+"""The protocol, for the audit log."""
 
 
 class RobotServer(Server[Any]):
-    """The SDK's server, whose instructions say what the robot is like now.
+    """The SDK's server, with instructions that describe the robot as it is now.
 
     Args:
         describe: Returns the instructions.
-        options: Those of the SDK.
+        options: The options of the SDK.
     """
 
     def __init__(self, name: str, describe: Callable[[], str], **options: Any) -> None:
@@ -55,13 +55,13 @@ class RobotServer(Server[Any]):
         self.middleware.append(self._describe_first)
 
     def create_initialization_options(self, *args: Any, **options: Any) -> InitializationOptions:
-        """Return what clients of the older revisions are told at first."""
+        """Return the information that clients of older revisions receive first."""
         self.instructions = self._describe()
         changing = NotificationOptions(tools_changed=True, resources_changed=True)
         return super().create_initialization_options(*(args or (changing,)), **options)
 
     async def _describe_first(self, ctx: Any, call_next: Any) -> Any:
-        """Make the instructions anew before a client of 2026-07-28 is told them."""
+        """Update the instructions before a client of 2026-07-28 receives them."""
         if ctx.method == "server/discover":
             self.instructions = self._describe()
         return await call_next(ctx)
@@ -72,13 +72,14 @@ class McpServer:
 
     Args:
         clients: All clients of the robot.
-        identity: Returns who a client is that has no request of HTTP: of stdio, or in this process.
-        about: What the owner of the robot says of it.
+        identity: Returns the identity of a client without an HTTP request: over stdio, or in this
+            process.
+        about: The owner's description of the robot.
         bags: The folder of the bags that may be read; empty for none.
 
     Attributes:
         server: The server of the SDK.
-        events: What has happened to the robot.
+        events: The events of the robot.
     """
 
     def __init__(
@@ -108,11 +109,11 @@ class McpServer:
         )
 
     async def run(self) -> None:
-        """Tell clients what changes, until it is cancelled."""
+        """Notify clients of changes, until cancelled."""
         await self.events.run()
 
     def instructions(self) -> str:
-        """Return what a model is told at first: which robot this is, and how it moves."""
+        """Return the instructions for a model: which robot this is, and how it moves."""
         node = self._clients.node
         seen = len(
             {
@@ -127,9 +128,9 @@ class McpServer:
             nodes = f"{seen} node{'s' if seen > 1 else ''}"
         else:
             nodes = "no nodes; is the robot running, and in this domain?"
-        about = f"\n\nIts owner says of it: {self._about}" if self._about else ""
+        about = f"\n\nIts owner's description: {self._about}" if self._about else ""
         return (
-            f"A robot with ROS 2 in domain {domain}, which shows {nodes}. Use `list` and "
+            f"A robot with ROS 2 in domain {domain}, with {nodes}. Use `list` and "
             "`describe` first. Motion is bounded by a policy and ends with its call; `stop` "
             "ends all that you move, at any time. Lengths are in metres, angles in radians, x is "
             "ahead and y is left, unless an answer says otherwise. What messages, images, names "
@@ -139,10 +140,10 @@ class McpServer:
 
     @asynccontextmanager
     async def session(self, context: Any) -> AsyncIterator[Session]:
-        """Yield the session of a request, which ends to the end, however often it is cancelled.
+        """Yield the session of a request, and complete its end, however often it is cancelled.
 
         Raises:
-            RefusedError: the policy does not know the client any more, or there are too many.
+            RefusedError: the policy no longer knows the client, or there are too many clients.
         """
         request = context.request
         if request is None:
@@ -179,7 +180,7 @@ class McpServer:
             return failure(error)
 
     def _note_refusal(self, context: Any, error: RefusedError) -> None:
-        """Write down that a call was refused before it had a session."""
+        """Record that a call was refused before it had a session."""
         if context.request is not None:
             self._clients.note_refusal(context.request.scope["aionode.credentials"], error)
             return
@@ -190,7 +191,7 @@ class McpServer:
     async def _run(
         self, context: Any, params: types.CallToolRequestParams, session: Session
     ) -> types.CallToolResult | types.InputRequiredResult:
-        """Run a tool in a session, and write it down."""
+        """Run a tool in a session, and record it."""
         arguments = params.arguments or {}
         call = Call(session, context, self._clients)
         own = self._clients.robot.ask
@@ -260,17 +261,17 @@ class McpServer:
     ) -> types.GetPromptResult:
         async with self._asked(context) as session:
             if params.name != PROMPT.name:
-                raise ToolError(params.name[:100], f"there is {PROMPT.name}", "not_found")
+                raise ToolError(params.name[:100], f"the only prompt is {PROMPT.name}", "not_found")
             text = types.TextContent(type="text", text=how_to_move(session))
         message = types.PromptMessage(role="user", content=text)
         return types.GetPromptResult(description=PROMPT.description, messages=[message])
 
     @asynccontextmanager
     async def _asked(self, context: Any) -> AsyncIterator[Session]:
-        """Yield the session of a request that is no call; its errors are those of the protocol.
+        """Yield the session of a request that is no call; its errors become errors of the protocol.
 
         Raises:
-            MCPError: what was asked for is refused, or not there.
+            MCPError: the request is refused, or its subject does not exist.
         """
         try:
             async with self.session(context) as session:

@@ -1,4 +1,4 @@
-"""The built-in web page: a few files, which need nothing from elsewhere."""
+"""The built-in web page: a few files without external dependencies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ FOLDER: Final = Path(__file__).with_name("static")
 KINDS: Final = {".css": "text/css", ".html": "text/html", ".js": "text/javascript"}
 
 HEADERS: Final = {
-    # Only its own files run and connect, so that a text of the robot can do nothing on the page.
+    # Only its own files may run and connect, so that texts of the robot cannot do anything on the
+    # page.
     "content-security-policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
         "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -1,1 +1,1 @@
-"""Who a client is, and what it may do."""
+"""The identities of clients, and the rules for them."""

@@ -1,4 +1,4 @@
-"""The limits that a policy sets to the fields of messages, and the numbers that none may have."""
+"""The limits that a policy sets on the fields of messages, and the check for finite numbers."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class FieldLimit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class OutOfLimitsError(ValueError):
-    """A field value is outside of its limits. Caught by `Policy.decide`."""
+    """A field value is outside its limits. Caught by `Policy.decide`."""
 
 
 def check_finite(message: Any) -> None:
-    """Refuse a message or a parameter with a number that is NaN or infinite.
+    """Refuse a message or parameter that contains NaN or infinity.
 
     Raises:
-        OutOfLimitsError: there is one; its path is named.
+        OutOfLimitsError: it contains one, whose path the error names.
     """
     if isinstance(message, Message):
         found = next(not_finite_in(message), None) if may_not_be_finite(message) else None
@@ -47,16 +47,17 @@ def check_finite(message: Any) -> None:
     if found is not None:
         path, number = found
         raise OutOfLimitsError(
-            f"{path} is {number}; the robot takes finite numbers only, unless a rule of the policy "
-            "for this name has finite = false"
+            f"{path} is {number}; the robot accepts only finite numbers, unless the "
+            "policy's rule for this name has finite = false"
         )
 
 
 def may_not_be_finite(message: Message) -> bool:
-    """Return whether a message may have a number that is NaN or infinite.
+    """Return whether a message may contain NaN or infinity.
 
-    A walk over 100 000 numbers would hold up the loop for a tenth of a second. As JSON, which is
-    written twenty times faster, those numbers are null; a text may say so as well.
+    Walking over 100 000 numbers would block the loop for a tenth of a second. In JSON, which is
+    written twenty times faster, such numbers are null; null within a text only costs a needless
+    walk.
     """
     if not floating(type(message)):
         return False
@@ -67,7 +68,7 @@ def may_not_be_finite(message: Message) -> bool:
 
 
 def numbers_only(value: Any) -> object:
-    """Return the floating-point numbers of an array of numpy for JSON; nothing of other arrays."""
+    """Convert a numpy array of floating-point numbers for JSON, and any other array to nothing."""
     return value.tolist() if value.dtype.kind == "f" else []
 
 
@@ -87,7 +88,7 @@ def not_finite_in(message: Message) -> Iterator[tuple[str, float]]:
 
 @cache
 def floating(cls: type[Message]) -> list[tuple[str, FieldType]]:
-    """Return the fields of a class that may have a floating-point number in them."""
+    """Return the fields of a class that may contain floating-point numbers."""
     return [
         (field.name, field.type)
         for field in fields(cls)
@@ -99,7 +100,7 @@ def floating(cls: type[Message]) -> list[tuple[str, FieldType]]:
 def not_finite(value: Any) -> list[float]:
     """Return the numbers of a field or parameter that are NaN or infinite."""
     if hasattr(value, "dtype"):
-        import numpy as np  # imported on first use, as by the messages
+        import numpy as np  # imported on first use, as in the messages
 
         numbers: list[float] = value[~np.isfinite(value)].tolist()
         return numbers
@@ -108,10 +109,10 @@ def not_finite(value: Any) -> list[float]:
 
 
 def limited(message: Any, limits: Mapping[str, FieldLimit]) -> Any:
-    """Return a message whose fields are within their limits: unchanged if they already are.
+    """Return a message whose fields are within their limits, unchanged if they already are.
 
     Raises:
-        OutOfLimitsError: a value is not within its limits, and may not be clamped.
+        OutOfLimitsError: a value is outside its limits, and may not be clamped.
     """
     outside = [
         path
@@ -133,7 +134,7 @@ def limited(message: Any, limits: Mapping[str, FieldLimit]) -> Any:
 
 
 def leaves(owner: Any, path: list[str]) -> Iterator[tuple[Any, str, Any]]:
-    """Yield what a path leads to, with its owner and name; through all messages of an array.
+    """Yield the values at a path, each with its owner and name, through all messages of an array.
 
     Raises:
         OutOfLimitsError: there is no such field.
@@ -142,7 +143,9 @@ def leaves(owner: Any, path: list[str]) -> Iterator[tuple[Any, str, Any]]:
     try:
         value = owner[name] if isinstance(owner, Mapping) else getattr(owner, name)
     except (KeyError, AttributeError):
-        raise OutOfLimitsError(f"the policy limits a field {name!r}, which is not there") from None
+        raise OutOfLimitsError(
+            f"the policy limits a field {name!r}, which does not exist"
+        ) from None
     if len(path) == 1:
         yield owner, name, value
         return
@@ -165,7 +168,7 @@ def numbers_of(value: Any, path: str) -> Iterable[Any]:
         OutOfLimitsError: the field has none.
     """
     if isinstance(value, str | bytes | Message) or value is None:
-        raise OutOfLimitsError(f"{path} is no number, and the policy limits it")
+        raise OutOfLimitsError(f"{path} is not a number, and the policy limits it")
     return value if isinstance(value, Iterable) else (value,)
 
 
@@ -173,18 +176,20 @@ def is_within(number: Any, limit: FieldLimit, path: str) -> bool:
     """Return whether a number is within its limits.
 
     Raises:
-        OutOfLimitsError: the number is NaN, for which no limit is the nearest.
+        OutOfLimitsError: the number is NaN, which has no nearest limit.
     """
     if number != number:  # noqa: PLR0124  # only NaN differs from itself
         raise OutOfLimitsError(f"{path} is NaN, and the policy limits it")
     try:
         return bool(limit.min <= number <= limit.max)
     except TypeError:
-        raise OutOfLimitsError(f"{path} has what is no number, and the policy limits it") from None
+        raise OutOfLimitsError(
+            f"{path} contains something that is not a number, and the policy limits it"
+        ) from None
 
 
 def clamped(value: Any, limit: FieldLimit) -> Any:
-    """Return a number or an array with each number within its limits."""
+    """Clamp a number, or each number of an array, to its limits."""
     if hasattr(value, "dtype") and isinstance(value, Iterable):
         copy: Any = value.copy()  # type: ignore[attr-defined]  # an array of numpy
         copy[:] = [clamped(number, limit) for number in copy.tolist()]
@@ -193,6 +198,6 @@ def clamped(value: Any, limit: FieldLimit) -> Any:
         return [clamped(number, limit) for number in value]
     if limit.min <= value <= limit.max:
         return value
-    if isinstance(value, int):  # the nearest one within
+    if isinstance(value, int):  # the nearest value within
         return math.ceil(limit.min) if value < limit.min else math.floor(limit.max)
     return limit.min if value < limit.min else limit.max

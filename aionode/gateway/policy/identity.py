@@ -16,19 +16,20 @@ __all__ = ["Credentials", "Identity", "from_scope", "parsed_address", "place_of"
 IPV6_HOST_BITS: Final = 64
 
 TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
-"""Before the token, among the subprotocols of a WebSocket: browsers can set no header there."""
+"""The prefix of a token among the subprotocols of a WebSocket, where browsers cannot set a
+header."""
 
 FORWARDED: Final = frozenset({"forwarded", "via", "x-real-ip"})
 """Headers added by proxies, besides those that start with ``x-forwarded-``."""
 
 
 class Identity(msgspec.Struct, frozen=True):
-    """The identity of a client, by the policy.
+    """The identity of a client under the policy.
 
     Attributes:
-        name: For the audit log, and for others who ask who commands a topic.
+        name: Its name, for the audit log and for refusals of other clients.
         groups: The groups that the policy assigns to it, which rules may refer to.
-        address: Where it connects from.
+        address: The address it connects from.
     """
 
     name: str
@@ -37,20 +38,20 @@ class Identity(msgspec.Struct, frozen=True):
 
     @property
     def place(self) -> str:
-        """Where it connects from, as far as that distinguishes clients; see `place_of`."""
+        """The network place it connects from; see `place_of`."""
         return place_of(self.address)
 
 
 class Credentials(msgspec.Struct, frozen=True):
-    """The evidence of a client's identity, in its first request.
+    """The evidence of a client's identity in its first request.
 
     Attributes:
-        address: Where it connects from.
+        address: The address it connects from.
         token: Its token; empty without one. It is never printed.
         certificate: The common name of its TLS certificate, which the server has verified.
         origin: The origin of the page that has made the request; None if no page has.
         host: The ``Host`` header: the name under which the client knows the gateway.
-        sec_fetch_site: How the page and the gateway are related, as the browser says.
+        sec_fetch_site: The relation of the page to the gateway, as stated by the browser.
         scheme: ``http`` or ``https``.
         is_forwarded: Whether its headers show that a proxy has forwarded the request.
     """
@@ -70,7 +71,7 @@ class Credentials(msgspec.Struct, frozen=True):
 
     @property
     def is_loopback(self) -> bool:
-        """Whether the client runs on this host: a proxy there may speak for anybody."""
+        """Whether the client runs on this host and is no proxy, which may speak for anybody."""
         address = parsed_address(self.address)
         return address is not None and address.is_loopback and not self.is_forwarded
 
@@ -80,7 +81,7 @@ def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
 
     Args:
         scope: The scope, of HTTP or of a WebSocket.
-        token: The token, as `take_token` has found it.
+        token: The token found by `take_token`.
     """
     headers: dict[str, str] = {}
     for raw_name, raw_value in scope["headers"]:
@@ -101,10 +102,10 @@ def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
 
 
 def take_token(scope: Mapping[str, Any]) -> str:
-    """Return the token of a request, and remove it from the scope, which servers log.
+    """Return the token of a request, and remove it from the scope, which servers may log.
 
-    It is the header ``Authorization: Bearer TOKEN``, a subprotocol ``bearer.TOKEN``, or
-    ``?token=``.
+    It may be in the header ``Authorization: Bearer TOKEN``, in a subprotocol ``bearer.TOKEN``, or
+    in ``?token=``.
     """
     token = ""
     query = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
@@ -123,7 +124,7 @@ def take_token(scope: Mapping[str, Any]) -> str:
 
 
 def parsed_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
-    """Return an address; None for a name. IPv4 mapped into IPv6 is IPv4."""
+    """Return a parsed address, or None for a name. IPv4 mapped into IPv6 is returned as IPv4."""
     try:
         address = ipaddress.ip_address(text.partition("%")[0])
     except ValueError:
@@ -132,7 +133,7 @@ def parsed_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address |
 
 
 def place_of(address: str) -> str:
-    """Return where an address is: one host may have all those of an IPv6 network."""
+    """Return the place of an address: one host may own all addresses of an IPv6 network."""
     parsed = parsed_address(address)
     if parsed is None or parsed.version == 4:
         return str(parsed or address)

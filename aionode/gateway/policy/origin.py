@@ -1,4 +1,4 @@
-"""Requests of browsers: pages of other origins, and other names of this machine, are refused."""
+"""Checks requests of browsers: pages of other origins and unknown host names are refused."""
 
 from __future__ import annotations
 
@@ -16,36 +16,36 @@ if TYPE_CHECKING:
 __all__ = ["check_browser", "check_host"]
 
 HOST: Final = re.compile(r"(\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[\w.-]+)(?::[0-9]{1,5})?", re.ASCII)
-"""A ``Host`` header: an address or a name, and perhaps a port; nobody is named before an ``@``."""
+"""A ``Host`` header: an address or a name, optionally with a port, and never with an ``@``."""
 
 SAME_SITES: Final = frozenset({"", "none", "same-origin"})
-"""The values of Sec-Fetch-Site of a request that no page of another origin has made."""
+"""The values of Sec-Fetch-Site in a request that no page of another origin has made."""
 
 
 def check_browser(
     credentials: Credentials, hosts: Iterable[str] = (), origins: Iterable[str] = ()
 ) -> None:
-    """Refuse a request that a page of another origin has made.
+    """Refuse a request made by a page of another origin.
 
-    A page on the Internet can have the browser of its reader connect to a port of the reader's own
-    machine or network, and even under the page's own name, if its name server says so (DNS
-    rebinding). So the gateway is known by addresses, by ``localhost``, and by the names that the
-    policy lists.
+    A page on the Internet can make its reader's browser connect to a port of the reader's own
+    machine or network, even under the page's own name if its name server resolves it so (DNS
+    rebinding). So the gateway is known only by addresses, by ``localhost``, and by the names that
+    the policy lists.
 
     Args:
-        credentials: Those of the request.
-        hosts: The names of this machine, by the policy.
-        origins: The origins of pages that may connect, by the policy.
+        credentials: The credentials of the request.
+        hosts: The names of this machine listed in the policy.
+        origins: The origins of pages that may connect, listed in the policy.
 
     Raises:
-        RefusedError: such a page has made it, or the request names another host.
+        RefusedError: such a page made the request, or it names another host.
     """
     check_host(credentials, hosts)
     if credentials.origin is None:
         if credentials.sec_fetch_site not in SAME_SITES:
             raise RefusedError(
                 "request of a page",
-                "a page of another site has made it; list its origin under `origins` in the policy",
+                "a page of another site made it; list its origin under `origins` in the policy",
                 "unauthorized",
             )
     elif not is_same_origin(credentials) and credentials.origin not in set(origins):
@@ -57,10 +57,10 @@ def check_browser(
 
 
 def check_host(credentials: Credentials, hosts: Iterable[str] = ()) -> None:
-    """Refuse a request for another host than this one.
+    """Refuse a request for a host other than this one.
 
     Raises:
-        RefusedError: this machine has no such name.
+        RefusedError: this machine is not known by that name.
     """
     if not is_known_host(credentials.host, hosts):
         raise RefusedError(
@@ -72,12 +72,12 @@ def check_host(credentials: Credentials, hosts: Iterable[str] = ()) -> None:
 
 
 def is_same_origin(credentials: Credentials) -> bool:
-    """Return whether the gateway itself has served the page; an opaque origin is ``null``."""
+    """Return whether the gateway itself served the page; an opaque origin is ``null``."""
     return credentials.origin == f"{credentials.scheme}://{credentials.host}"
 
 
 def is_known_host(host: str, names: Iterable[str]) -> bool:
-    """Return whether a ``Host`` header names this machine: no page can have such a name rebound."""
+    """Return whether a ``Host`` header names this machine, under a name that no page can rebind."""
     parts = HOST.fullmatch(host)
     if parts is None:
         return False

@@ -1,7 +1,7 @@
-"""The rights of clients on the robot: rules, as a person reviews them in a file.
+"""The rights of clients on the robot: rules in a file that people can review.
 
-A rule says which clients it is about, what these clients may do with which names, and within which
-limits. The policy refuses a request that no rule allows, and a ``[[refuse]]`` has precedence over
+A rule states which clients it applies to, what they may do with which names, and within which
+limits. The policy refuses a request that no rule allows, and a ``[[refuse]]`` takes precedence over
 every ``[[allow]]``.
 """
 
@@ -32,7 +32,7 @@ __all__ = ["Decision", "FieldLimit", "LeaseRule", "Limits", "Policy", "Rule", "T
 Verb: TypeAlias = Literal[
     "see", "subscribe", "publish", "call", "goal", "parameter", "advertise", "stop"
 ]
-"""The uses of a name by a client; ``parameter`` sets one, and to read one is to ``see`` it."""
+"""The uses of a name by a client. ``parameter`` is for setting one; reading one needs ``see``."""
 
 Names: TypeAlias = str | list[str]
 
@@ -49,7 +49,7 @@ VERBS: Final[tuple[Verb, ...]] = (
 WRITING: Final[tuple[Verb, ...]] = ("publish", "call", "goal", "parameter", "advertise", "stop")
 
 UNTYPED: Final[tuple[Verb, ...]] = ("see", "parameter")
-"""The verbs about nodes and parameters, which have no type."""
+"""The verbs for nodes and parameters, which have no type."""
 
 LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
     "type": ("see", "subscribe", "publish", "call", "goal", "advertise", "stop"),
@@ -63,7 +63,7 @@ LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
 """The keys of a rule that limit what it allows, and the verbs that each of them can limit."""
 
 COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
-"""Types whose default message stops a robot: without a policy file they are published by lease."""
+"""Types whose default message stops a robot; without a policy file they are published by lease."""
 
 MEASUREMENTS: Final = frozenset(
     f"sensor_msgs/msg/{name}"
@@ -82,14 +82,14 @@ MEASUREMENTS: Final = frozenset(
         "Temperature",
     )
 )
-"""Types that only say what a sensor has measured. NaN and infinities have a meaning there, as their
-definitions or REP 117 say; anywhere else, arithmetic of a controller would carry them on."""
+"""Types that only report measurements. NaN and infinities have a meaning in them, defined by their
+definitions or REP 117; in any other type they would spread through a controller's arithmetic."""
 
 MOST_REMEMBERED: Final = 16_384
-"""Decisions, and patterns of names, that are kept."""
+"""Number of decisions and of name patterns that are cached."""
 
 MOST_CHARACTERS: Final = 1000
-"""The longest name that is looked for in rules, in characters."""
+"""The longest name that is matched against rules, in characters."""
 
 READ_ONLY: Final = (
     "without a policy, clients only read; start the gateway with --allow-write, or write a policy"
@@ -104,19 +104,19 @@ ORIGIN: Final = re.compile(
 
 
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A part of a policy file. An unknown key is an error: as a rule, it would have no effect."""
+    """A part of a policy file. An unknown key is an error, as it would have no effect."""
 
 
 class LeaseRule(Part, frozen=True):
-    """How commands on a topic are published: by one client at a time, with a stop at the end.
+    """Rules for commands on a topic: one client at a time publishes them, with a stop at the end.
 
     Attributes:
-        ttl_sec: The longest time between two commands of the holder, in seconds. After it, the
-            gateway publishes the stop.
-        priority: A client takes the topic from a holder of a lower priority.
-        max_age_sec: The greatest age of a command, in seconds: by its stamp, and since it arrived.
-        stop: The values of the message that stops the robot; other fields have their defaults. A
-            type whose default message is not all zeros needs it.
+        ttl_sec: The longest time between two commands of the holder, in seconds. After that time,
+            the gateway publishes the stop.
+        priority: A client takes the topic over from a holder of lower priority.
+        max_age_sec: The greatest age of a command, in seconds: by its stamp, and since its arrival.
+        stop: The values of the message that stops the robot; other fields have their defaults.
+            Required for a type whose default message is not all zeros.
     """
 
     ttl_sec: float = 0.3
@@ -126,19 +126,20 @@ class LeaseRule(Part, frozen=True):
 
     def __post_init__(self) -> None:
         if not 0 < self.ttl_sec < math.inf or not self.max_age_sec > 0:
-            raise ValueError("ttl_sec and max_age_sec are numbers of seconds above 0")
+            raise ValueError("ttl_sec and max_age_sec have to be numbers of seconds above 0")
 
 
 class Rule(Part, frozen=True):
     """One ``[[allow]]`` or ``[[refuse]]``.
 
     Names are full names, or patterns: ``*`` stands for any characters but a slash, ``?`` for one
-    character but a slash, and ``**`` for any characters. Each key takes one name or a list.
+    character but a slash, and ``**`` for any characters. Each key takes a name or a list of names.
 
     Attributes:
-        who: The names and groups of the clients that the rule is about; all clients if empty.
+        who: The names and groups of the clients that the rule applies to; all clients if empty.
         see: The topics, services, actions and nodes that these clients see, and the parameters that
-            they read, as ``/node:parameter``. ``/node`` stands for the node and its parameters.
+            they may read, as ``/node:parameter``. ``/node`` stands for the node and all its
+            parameters.
         subscribe: The topics to which clients may subscribe.
         publish: The topics to which clients may publish.
         call: The services that they may call.
@@ -146,20 +147,20 @@ class Rule(Part, frozen=True):
         parameter: The parameters that they may set, as ``/node:parameter``. ``/node`` stands for
             all parameters of the node.
         advertise: The services and actions that they may offer themselves.
-        stop: The topics and actions on which an assistant of theirs may end what others move. Its
-            own motion it may always end.
-        type: The types that the rule is about; all types if empty.
-        rate_hz: How often they may do so with each name, in hertz. The number of one second may
-            come at once.
+        stop: The topics and actions on which an assistant of theirs may end what others move. It
+            may always end its own motion.
+        type: The types that the rule applies to; all types if empty.
+        rate_hz: How often they may do so with each name, in hertz. One second's worth may come in a
+            burst.
         max_bytes: The largest message, request or goal, in bytes of CDR; None for any size.
         fields: The limits of fields, by paths such as ``linear.x``; a parameter has the one field
             ``value``.
-        finite: Whether a NaN or an infinity is refused anywhere in a message, request, goal or
-            parameter. By default it is, but for measurements such as a LaserScan that are published
+        finite: Whether NaN and infinity are refused anywhere in a message, request, goal or
+            parameter. By default they are, except in measurements such as a LaserScan published
             without a lease.
         ask: Whether a person has to approve each time.
         lease: How commands are published; None for messages that are not commands.
-        because: The reason that a refused client is told.
+        because: The reason given to a refused client.
     """
 
     who: Names = []
@@ -184,37 +185,37 @@ class Rule(Part, frozen=True):
         for verb in VERBS:
             for name in listed(getattr(self, verb)):
                 if not name.startswith(("/", "**")):
-                    raise ValueError(f"{verb}: {name!r} is no full name; begin it with a slash")
+                    raise ValueError(f"{verb}: {name!r} is not a full name; begin it with a slash")
         if not self.rate_hz > 0:
-            raise ValueError("rate_hz is a number of messages a second, above 0")
+            raise ValueError("rate_hz has to be a number of messages a second, above 0")
         for key, verbs in LIMITED.items():
             without = [verb for verb in VERBS if getattr(self, verb) and verb not in verbs]
             if without and has_key(self, key):
                 raise ValueError(
-                    f"{key}: it limits {', '.join(verbs)}, and not {without[0]}; write a rule of "
-                    f"its own for {without[0]}"
+                    f"{key}: it limits {', '.join(verbs)}, but not {without[0]}; write a "
+                    f"separate rule for {without[0]}"
                 )
 
     def is_about(self, identity: Identity) -> bool:
-        """Return whether the rule applies to a client: it names it, or names nobody."""
+        """Return whether the rule applies to a client: it names the client, or names nobody."""
         who = listed(self.who)
         return not who or identity.name in who or not identity.groups.isdisjoint(who)
 
     def covers(self, verb: Verb, name: str, type_name: str) -> bool:
-        """Return whether the rule is about doing something with a name of a type."""
+        """Return whether the rule applies to a use of a name with a type."""
         if type_name and not matches_type(self.type, type_name):
             return False
         return matches(getattr(self, verb), name)
 
     def needs_finite(self, type_name: str) -> bool:
-        """Return whether the numbers of a message of a type have to be finite."""
+        """Return whether a message of a type must contain only finite numbers."""
         if self.finite is not None:
             return self.finite
         return self.lease is not None or type_name not in MEASUREMENTS
 
 
 def has_key(rule: Rule, key: str) -> bool:
-    """Return whether a key of `LIMITED` is given in a rule."""
+    """Return whether a rule sets a key of `LIMITED`."""
     value = getattr(rule, key)
     if key == "finite":
         return value is not None
@@ -222,16 +223,16 @@ def has_key(rule: Rule, key: str) -> bool:
 
 
 class Who(Part, frozen=True):
-    """A client that the policy knows. All keys that are given have to be true of the client.
+    """A client known to the policy. It has to match all keys that are given.
 
     Attributes:
         name: The name of the client, for rules and for the audit log.
         groups: The groups of the client, for rules about several clients.
-        token: A secret that the client shows.
+        token: A secret that the client presents.
         token_sha256: The SHA-256 of the secret, in hexadecimal, instead of ``token``.
         certificate: The common name of the client's TLS certificate.
-        origin: The origin of the page. Without a token or certificate it counts on loopback only,
-            since a program may claim any origin.
+        origin: The origin of the page. Without a token or certificate it is accepted on loopback
+            only, since a program may claim any origin.
         loopback: Whether the client has to run on this host, where any user may connect.
     """
 
@@ -250,21 +251,21 @@ class Who(Part, frozen=True):
                 f"who {self.name!r}: give token, token_sha256, certificate, origin or loopback"
             )
         if self.token_sha256 and not re.fullmatch(r"[0-9a-fA-F]{64}", self.token_sha256):
-            raise ValueError(f"who {self.name!r}: token_sha256 has 64 hexadecimal digits")
+            raise ValueError(f"who {self.name!r}: token_sha256 must have 64 hexadecimal digits")
 
     @property
     def has_secret(self) -> bool:
-        """Whether the client shows a token or a certificate, which no other client has."""
+        """Whether the client presents a token or certificate, which no other client has."""
         return bool(self.token or self.token_sha256 or self.certificate)
 
     def has_token(self, token: str) -> bool:
-        """Return whether a token is the client's. All wrong tokens take the same time."""
+        """Return whether a token is the client's. All wrong tokens take the same time to check."""
         wanted = self.token_sha256.lower() or hashlib.sha256(self.token.encode()).hexdigest()
         given = hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
         return bool(self.token or self.token_sha256) and hmac.compare_digest(wanted, given)
 
     def fits(self, credentials: Credentials) -> bool:
-        """Return whether all keys that are given are true of a client."""
+        """Return whether a client matches all keys that are given."""
         if (self.token or self.token_sha256) and not self.has_token(credentials.token):
             return False
         if self.certificate and self.certificate != credentials.certificate:
@@ -275,32 +276,32 @@ class Who(Part, frozen=True):
 
 
 class Limits(Part, frozen=True):
-    """The limits for all clients, so that no client takes the robot's memory or processor.
+    """The limits for all clients, so that no client exhausts the robot's memory or processor.
 
     Attributes:
-        clients: The most connections at a time.
+        clients: The most simultaneous connections.
         frame_bytes: The largest frame or request of a client, and the largest message of many
-            values that is made of one, in bytes.
+            values created from one, in bytes.
         frame_parts: The most objects and lists in the JSON of a frame or request, which may have
             ten times as many values.
-        frames_per_sec: The most frames of a client that the gateway reads in a second.
-        queued_bytes: The most bytes that wait for one client; beyond it, the oldest messages are
+        frames_per_sec: The most frames per second that the gateway reads from a client.
+        queued_bytes: The most bytes that wait for one client; beyond that, the oldest messages are
             dropped.
         subscriptions: The most subscriptions of one client.
         advertised: The most topics to which one client publishes, and the most services and actions
             that it offers.
-        call_sec: The time for which a call of a service waits for its response if its client names
-            none, in seconds.
-        longest_call_sec: The longest time for which a call waits, whatever its client says, in
+        call_sec: How long a service call waits for its response if the client names no time, in
             seconds.
-        move_sec: The longest motion by one command of an assistant, in seconds: nobody notices that
-            its client is frozen.
-        goal_sec: The longest time for which a goal of an assistant runs, in seconds.
-        calls: The most calls, goals and questions about parameters of one client at a time.
-        handshake_sec: The longest time in which a request arrives, and the longest time for which
-            its client reads nothing of the answer, in seconds.
-        client_lost_sec: The longest time without a sign of a client that has goals or commands, in
-            seconds; after it, the client is lost.
+        longest_call_sec: The longest time that a call waits, whatever the client requests, in
+            seconds.
+        move_sec: The longest motion by one call of an assistant, in seconds, since a frozen client
+            goes unnoticed.
+        goal_sec: The longest time that a goal of an assistant runs, in seconds.
+        calls: The most simultaneous calls, goals and parameter requests of one client.
+        handshake_sec: The longest time for a request to arrive, and the longest time that its
+            client may read nothing of the answer, in seconds.
+        client_lost_sec: The longest silence of a client that has goals or commands, in seconds;
+            after that, the client counts as lost.
     """
 
     clients: int = 64
@@ -321,13 +322,13 @@ class Limits(Part, frozen=True):
     def __post_init__(self) -> None:
         for name in self.__struct_fields__:
             if not getattr(self, name) > 0:
-                raise ValueError(f"{name}: {getattr(self, name)}, needs a number above 0")
+                raise ValueError(f"{name}: {getattr(self, name)}, use a number above 0")
 
     def with_given(self, given: Iterable[str]) -> Limits:
-        """Return other limits.
+        """Return limits with some values replaced.
 
         Args:
-            given: Some as text, such as ``frame_bytes=20_000_000``.
+            given: The values as text, such as ``frame_bytes=20_000_000``.
 
         Raises:
             ValueError: there is no such limit, or its value is invalid.
@@ -336,16 +337,16 @@ class Limits(Part, frozen=True):
         for text in given:
             name, equals, value = text.partition("=")
             if name not in values or not equals:
-                raise ValueError(f"{text!r} is no limit; there are {', '.join(values)}")
+                raise ValueError(f"{text!r} is not a limit; use one of {', '.join(values)}")
             try:
                 values[name] = type(values[name])(value)
             except ValueError:
-                raise ValueError(f"{text!r}: the value is no number that fits") from None
+                raise ValueError(f"{text!r}: the value is not a valid number") from None
         return Limits(**values)
 
 
 class Tls(Part, frozen=True):
-    """The files of TLS, in PEM.
+    """The files for TLS, in PEM format.
 
     Attributes:
         certificate: The certificate of the gateway, with the certificates of its authorities.
@@ -359,13 +360,13 @@ class Tls(Part, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """The decision of the policy about a request of a client.
+    """The decision of the policy about a client's request.
 
     Attributes:
         allowed: Whether the request is allowed.
         reason: Why the request is refused; empty if it is allowed.
-        code: The reason as a word for programs, as in `RefusedError`.
-        message: The message of the request, with its fields within their limits.
+        code: The kind of refusal, as in `RefusedError`.
+        message: The message of the request, with its fields clamped to their limits.
         rule: The rule that allows the request.
     """
 
@@ -391,7 +392,7 @@ class Policy(Part, frozen=True):
 
     Attributes:
         who: The clients that the policy knows.
-        allow: The rules that allow. The first rule that covers a request counts.
+        allow: The rules that allow. The first rule that covers a request applies.
         refuse: The rules that refuse, whatever `allow` contains.
         hosts: The names of this machine, beside addresses and ``localhost``.
         origins: The origins of pages that may connect, beside the gateway's own page.
@@ -415,9 +416,9 @@ class Policy(Part, frozen=True):
         check_origins(self.origins)
         for host in self.hosts:
             if not re.fullmatch(r"[\w.-]+", host, re.ASCII):
-                raise ValueError(f"hosts: {host!r} is no name alone; leave out scheme and port")
+                raise ValueError(f"hosts: {host!r} is not just a name; omit scheme and port")
 
-    # A frozen struct has no place for what it remembers: see `first_rule`.
+    # A frozen struct has no room for this cache; see `first_rule`.
     def __hash__(self) -> int:
         return id(self)
 
@@ -426,7 +427,7 @@ class Policy(Part, frozen=True):
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Policy:
-        """Return the policy of a TOML file.
+        """Load the policy from a TOML file.
 
         Raises:
             PolicyFileError: the file cannot be read, or is not a policy (a ValueError).
@@ -438,7 +439,7 @@ class Policy(Part, frozen=True):
 
     @classmethod
     def parse(cls, text: str | bytes, path: str = "") -> Policy:
-        """Return the policy of a TOML text; `path` is named in errors.
+        """Parse the policy in a TOML text; `path` is named in errors.
 
         Raises:
             PolicyFileError: the text is not a policy (a ValueError).
@@ -448,26 +449,28 @@ class Policy(Part, frozen=True):
         except (msgspec.DecodeError, ValueError, RecursionError) as error:
             raise PolicyFileError(path, str(error)) from error
         if policy.path:
-            raise PolicyFileError(path, "`path` is no key of a policy")
+            raise PolicyFileError(path, "`path` is not a key of a policy")
         known = {client.name for client in policy.who}
         known |= {group for client in policy.who for group in client.groups}
         for rule in policy.refuse:
             for key in LIMITED:
                 if key != "type" and has_key(rule, key):
                     raise PolicyFileError(
-                        path, f"{key}: a [[refuse]] has no limits, an [[allow]] has"
+                        path, f"{key}: a [[refuse]] has no limits; only an [[allow]] does"
                     )
         for rule in (*policy.allow, *policy.refuse):
             unknown = sorted(set(listed(rule.who)) - known)
             if unknown:
-                raise PolicyFileError(path, f"a rule is about {unknown[0]!r}, which no [[who]] is")
+                raise PolicyFileError(
+                    path, f"a rule names {unknown[0]!r}, but there is no such [[who]]"
+                )
         return msgspec.structs.replace(policy, path=path)
 
     @classmethod
     def default(cls, *, allow_write: bool = False, limits: Limits = Limits()) -> Policy:  # noqa: B008  # frozen
         """Return the policy of a gateway without a policy file.
 
-        Only programs of this host may connect. They read everything, and write nothing.
+        Only programs on this host may connect. They may read everything and write nothing.
 
         Args:
             allow_write: Whether these programs may also publish, call, send goals, set parameters
@@ -487,7 +490,7 @@ class Policy(Part, frozen=True):
 
     @property
     def knows_secrets(self) -> bool:
-        """Whether a client of another host can be known, by a token or certificate."""
+        """Whether clients on other hosts can be identified, by a token or certificate."""
         return any(who.has_secret for who in self.who)
 
     @property
@@ -496,20 +499,20 @@ class Policy(Part, frozen=True):
         return frozenset([*self.origins, *(who.origin for who in self.who if who.origin)])
 
     def identify(self, credentials: Credentials) -> Identity:
-        """Return who a client is.
+        """Return the identity of a client.
 
         Raises:
-            RefusedError: it shows nothing that the policy knows, a wrong token, or it is a page of
-                another origin; its code is ``unauthorized``.
+            RefusedError: it presents nothing that the policy knows, or a wrong token, or it is a
+                page of another origin; the code is ``unauthorized``.
         """
         check_browser(credentials, self.hosts, self.page_origins)
         fitting = [who for who in self.who if who.fits(credentials)]
-        # A token or certificate says more about a client than that it runs on this host.
+        # A token or certificate says more about a client than the fact that it runs on this host.
         fitting.sort(key=lambda who: not who.has_secret)
         if credentials.token and not any(who.has_token(credentials.token) for who in fitting):
             fitting = []
         if not fitting:
-            what = "its token is not known" if credentials.token else "it shows no token that fits"
+            what = "its token is unknown" if credentials.token else "it presents no valid token"
             raise RefusedError(
                 f"client of {credentials.address or 'an unknown address'}",
                 f"{what}; send `Authorization: Bearer TOKEN` with one of the policy",
@@ -535,7 +538,7 @@ class Policy(Part, frozen=True):
         *,
         private: bool = False,
     ) -> Decision:
-        """Return whether a request of a client is allowed, and within which limits.
+        """Decide whether a client's request is allowed, and within which limits.
 
         Args:
             identity: The client.
@@ -544,7 +547,7 @@ class Policy(Part, frozen=True):
             type_name: The name of its type; empty for nodes and parameters, and while it is not
                 known.
             message: The message or mapping that the client sends; None before there is one.
-            private: Whether only rules allow it that have the name itself, and no pattern.
+            private: Whether only rules with the exact name, and no pattern, can allow it.
         """
         if len(name) > MOST_CHARACTERS:
             return Decision(allowed=False, reason="the name is too long", code="too_large")
@@ -573,14 +576,14 @@ def first_rule(
     *,
     private: bool = False,
 ) -> Rule | None:
-    """Return the rule that decides: the first that refuses, else the first that allows.
+    """Return the rule that decides: the first matching refusal, otherwise the first that allows.
 
-    A client sees what it may use, and may not use what it may not see. A node is seen by who may
-    see it, or set its parameters: a rule about topics of the same name says nothing about it.
+    A client sees what it may use, and may not use what it may not see. A node is visible to those
+    who may see it or set its parameters; a rule about topics of the same name does not matter.
     """
     refusing: tuple[Verb, ...] = (verb,) if verb == "see" else (verb, "see")
     for rule in policy.refuse:
-        if rule.type and not type_name:  # not yet known: the question comes again with it
+        if rule.type and not type_name:  # not known yet: the request is checked again when it is
             continue
         if rule.is_about(identity) and any(rule.covers(v, name, type_name) for v in refusing):
             return rule
@@ -598,19 +601,20 @@ def first_rule(
 
 
 def check_origins(origins: Iterable[str]) -> None:
-    """Refuse an origin that no page has which may be told from others.
+    """Refuse an origin that cannot identify a page.
 
     Raises:
-        ValueError: an origin is not written as browsers do, or is that of any page in a sandbox.
+        ValueError: an origin is not written as browsers do, or is ``null``, the origin of any
+            sandboxed page.
     """
     for origin in origins:
         if origin == "null":
-            raise ValueError("origin 'null': every page in a sandbox has it; name a real one")
+            raise ValueError("origin 'null': every sandboxed page has it; name a real one")
         is_default = re.fullmatch("http://.*:80|https://.*:443", origin)
         if is_default or not ORIGIN.fullmatch(origin):
             raise ValueError(
                 f"origin {origin!r}: write it as browsers do, such as https://dash.example or "
-                "http://dash.example:3000: in small letters, without a path or the usual port"
+                "http://dash.example:3000: in lower case, without a path or the default port"
             )
 
 
@@ -618,12 +622,12 @@ def check_origins(origins: Iterable[str]) -> None:
 
 
 def listed(names: Names) -> list[str]:
-    """Return one name or several as a list."""
+    """Return one name, or several, as a list."""
     return [names] if isinstance(names, str) else names
 
 
 def matches(globs: Names, name: str) -> bool:
-    """Return whether a name fits one of several; one without a colon stands for all parameters."""
+    """Return whether a name matches one of several; one without a colon matches all parameters."""
     node = name.partition(":")[0]
     return any(
         pattern_of(glob).fullmatch(name if ":" in glob else node) is not None
@@ -632,13 +636,13 @@ def matches(globs: Names, name: str) -> bool:
 
 
 def matches_type(globs: Names, type_name: str) -> bool:
-    """Return whether a type fits; no names fit all."""
+    """Return whether a type matches; an empty list matches all types."""
     return not globs or any(pattern_of(glob).fullmatch(type_name) for glob in listed(globs))
 
 
 @lru_cache(maxsize=MOST_REMEMBERED)
 def pattern_of(glob: str) -> re.Pattern[str]:
-    """Return the expression for a name with ``*`` and ``**``."""
+    """Return the regular expression for a name with ``*`` and ``**``."""
     parts = {"**": ".*", "*": "[^/]*", "?": "[^/]"}
     tokens = re.split(r"(\*\*|\*|\?)", glob)
     return re.compile("".join(parts.get(token, re.escape(token)) for token in tokens), re.DOTALL)

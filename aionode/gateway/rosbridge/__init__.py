@@ -1,1 +1,1 @@
-"""The protocol of rosbridge, with the services of rosapi."""
+"""The rosbridge protocol, with the services of rosapi."""

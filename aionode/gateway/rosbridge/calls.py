@@ -30,7 +30,7 @@ Op = dict[str, Any]
 
 @dataclass
 class Goal:
-    """One goal of the client, from the op that sends it to its result."""
+    """A goal of the client, from the op that sends it to its result."""
 
     action: str
     task: asyncio.Task[None] | None = None
@@ -39,7 +39,7 @@ class Goal:
 
 
 class Calls:
-    """The calls and goals of one client; every one is answered.
+    """The calls and goals of one client, each of which is answered.
 
     Args:
         link: The way to the client.
@@ -56,7 +56,7 @@ class Calls:
 
     async def call_service(self, op: Op, arrived_ns: int) -> None:
         """Start a call; the client continues meanwhile."""
-        name, _, old_id = text(op, "service").partition("#")  # as in the first rosbridge
+        name, _, old_id = text(op, "service").partition("#")  # as in rosbridge 1
         if old_id and op.get("id") is None:
             op["id"] = old_id
         answer = {"op": "service_response", "service": name, "id": raw_id(op)}
@@ -79,8 +79,8 @@ class Calls:
             return await _rosapi.answer(self._session, of_rosapi, args)
         timeout = op.get("timeout")
         if timeout != timeout:  # noqa: PLR0124  # NaN, which would put the loop's timers in disorder
-            raise MessageError("call_service: timeout", "NaN; it needs a number of seconds")
-        wanted = None if timeout is None else math.inf  # as none does, and what is not above 0
+            raise MessageError("call_service: timeout", "NaN; use a number of seconds")
+        wanted = None if timeout is None else math.inf  # the same as none, like values not above 0
         if not is_negative(timeout):
             wanted = number(op, "timeout") or wanted
         response = await self._session.call(
@@ -91,17 +91,17 @@ class Calls:
     # Actions
 
     async def send_action_goal(self, op: Op, arrived_ns: int) -> None:
-        """Begin a goal; its feedback and its result follow.
+        """Start a goal; its feedback and its result follow.
 
         Raises:
-            MessageError: another goal with the same id is under way, or there are too many.
+            MessageError: another goal with the same id is in progress, or there are too many.
         """
         action, message_id = text(op, "action"), id_of(op)
         goal = Goal(action)
         key = message_id if message_id is not None else object()
         answer = {"op": "action_result", "action": action, "id": raw_id(op)}
         if key in self._goals:
-            problem = f"{message_id} is under way; use another id"
+            problem = f"{message_id} is in use by another goal; use another id"
             raise MessageError("send_action_goal.id", problem)
         self._goals[key] = goal
         try:
@@ -120,7 +120,7 @@ class Calls:
         except asyncio.CancelledError:
             if not goal.is_withdrawn:
                 raise
-            problem = f"{goal.action}: canceled before the server had accepted it"
+            problem = f"{goal.action}: canceled before the server accepted it"
             self._link.send(answer | {"values": problem, "status": 0, "result": False})
         finally:
             self._goals.pop(key, None)
@@ -145,7 +145,7 @@ class Calls:
         self._link.send(answer | result, size)
 
     async def cancel_action_goal(self, op: Op) -> None:
-        """Cancel a goal by its id, or without one all goals that the client sent to the action.
+        """Cancel a goal by its id; without an id, all goals that the client sent to the action.
 
         Raises:
             MessageError: the client has no such goal.
@@ -157,7 +157,7 @@ class Calls:
             if same_name(goal.action, action) and message_id in {None, key}
         ]
         if not goals:
-            problem = f"no goal with this id is under way; {action} may have ended it"
+            problem = f"no goal with this id is in progress; {action} may have ended it"
             raise MessageError("cancel_action_goal.id", problem)
         for goal in goals:
             if goal.handle is not None:
@@ -167,7 +167,7 @@ class Calls:
                 goal.task.cancel()
 
     async def _cancel(self, op: Op, handle: ClientGoalHandle[Any, Any]) -> None:
-        """Cancel a goal; the next op about the action does not wait for the answer."""
+        """Cancel a goal; later ops about the action do not wait for the answer."""
         try:
             answer = await handle.cancel()
         except (AionodeError, TimeoutError) as error:
@@ -179,10 +179,10 @@ class Calls:
 
 
 def same_name(name: str, other: str) -> bool:
-    """Return whether two names are equal except for the leading slash, which clients may omit."""
+    """Return whether two names are equal apart from the leading slash, which clients may omit."""
     return name.removeprefix("/") == other.removeprefix("/")
 
 
 def is_negative(timeout: object) -> bool:
-    """Return whether a time limit of a client is below 0, which means none."""
+    """Return whether a client's time limit is below 0, which means no limit."""
     return isinstance(timeout, int | float) and timeout < 0

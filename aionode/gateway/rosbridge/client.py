@@ -1,7 +1,7 @@
-"""The protocol of rosbridge 2, for one client: frames in, calls of its session, frames out.
+"""The protocol of rosbridge 2 for one client: frames in, calls of its session, frames out.
 
-It knows no socket. Ops are those of rosbridge 4; where that one fails in silence, the client is
-told, by a ``status`` if it has asked for those with ``set_level``.
+It does no I/O. The ops are those of rosbridge 4; where rosbridge 4 fails silently, the client gets
+a ``status`` if it has requested statuses with ``set_level``.
 """
 
 from __future__ import annotations
@@ -29,20 +29,21 @@ Op = dict[str, Any]
 Handler = Callable[..., Awaitable[None]]
 
 AGING: Final = ("publish", "call_service", "send_action_goal")
-"""Ops that may be too old: others of the same name, or a standstill, may be before them."""
+"""Ops that may be too old after waiting for other ops of the same name, or for a standstill to
+end."""
 
 MOST_MALFORMED: Final = 100
-"""Frames that are no ops that a client may send before it is disconnected."""
+"""Number of frames that are not valid ops after which a client is disconnected."""
 
 
 async def serve_frames(session: Session, frames: AsyncIterable[str | bytes]) -> None:
-    """Serve a client until its frames end, or it has sent too many that are no ops.
+    """Serve a client until its frames end, or it has sent too many that are not valid ops.
 
-    Answers and messages go to the session's outbox. Cancelling it ends what the client has begun,
-    as its leaving does.
+    Answers and messages go to the session's outbox. Cancelling this ends everything that the client
+    has started, as when it leaves.
 
     Args:
-        session: The session of the client, which its owner closes.
+        session: The session of the client, which the caller closes.
         frames: What the client sends, each text or bytes with one JSON object.
     """
     async with asyncio.TaskGroup() as tasks:
@@ -64,7 +65,7 @@ class Client:
         lanes: Its tasks.
 
     Attributes:
-        malformed: How many frames were no ops.
+        malformed: Number of frames that were not valid ops.
     """
 
     def __init__(self, session: Session, lanes: Lanes) -> None:
@@ -82,8 +83,8 @@ class Client:
             "service_response": offers.service_response,
             "set_level": self._set_level,
         }
-        # In order for each name, but one name does not wait for another. Calls and goals begin in
-        # their turn, so that a client finds the service that it has just advertised.
+        # In order within each name, but one name does not wait for another. Calls and goals start
+        # in this order too, so that a client finds the service that it has just advertised.
         self._in_order: dict[str, tuple[str, str, Handler]] = {
             "advertise": ("topic", "topic", topics.advertise),
             "advertise_action": ("serve", "action", offers.advertise_action),
@@ -100,7 +101,7 @@ class Client:
         }
 
     async def take(self, frame: str | bytes) -> None:
-        """Begin the op in a frame."""
+        """Start the op in a frame."""
         try:
             await self._lanes.admit(frame)
         except MessageError as error:
@@ -118,10 +119,10 @@ class Client:
                 await self._begin(op)
 
     async def _op_of(self, frame: str | bytes) -> Op | None:
-        """Return the op in a frame; None if the frame is a fragment, and others are missing.
+        """Return the op in a frame; None if it is a fragment of an incomplete message.
 
         Raises:
-            MessageError: the frame is no op, or its fragments are none.
+            MessageError: the frame, or the message of its fragments, is not a valid op.
         """
         op = op_of(frame, self._most_parts)
         if op["op"] != "fragment":
@@ -132,11 +133,11 @@ class Client:
         await self._lanes.admit(whole)
         op = op_of(whole, self._most_parts)
         if op["op"] == "fragment":
-            raise MessageError("fragment.data", "has fragments in it")
+            raise MessageError("fragment.data", "it contains further fragments")
         return op
 
     async def close(self) -> None:
-        """End all that the client has begun."""
+        """End everything that the client has started."""
         self._lanes.cancel()
         await self._offers.close()
 
@@ -149,22 +150,23 @@ class Client:
         else:
             self._link.session.rights.refused += 1
             known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
-            problem = f"{name[:60]!r} is unknown; there are {known}"
+            problem = f"{name[:60]!r} is unknown; use one of {known}"
             self._link.fail(MessageError("op", problem), op, " ")
 
     async def _put(self, op: Op) -> None:
         kind, field, handler = self._in_order[op["op"]]
         if op["op"] in AGING:
             handler = partial(handler, arrived_ns=self._link.session.arrivals.arrival_ns())
-        name = full_name(text(op, field).partition("#")[0])  # what follows is an id
+        name = full_name(text(op, field).partition("#")[0])  # an id follows
         await self._lanes.put((kind, name), partial(self._attempt, op, handler))
 
     async def _attempt(self, op: Op, handler: Handler) -> None:
-        """Handle an op, and tell the client if it fails."""
+        """Handle an op, and report a failure to the client."""
         try:
             await handler(op)
         except (AionodeError, TimeoutError) as error:
-            if isinstance(error, MessageError):  # a refusal by the policy is counted there
+            # the session has already counted a refusal by the policy
+            if isinstance(error, MessageError):
                 self._link.session.rights.refused += 1
             self._link.fail(error, op)
 
@@ -172,7 +174,7 @@ class Client:
         self._link.set_level(text(op, "level"))
 
     async def _auth(self, op: Op) -> None:
-        """Ignore ROS 1's authentication, whose server no longer exists."""
-        problem = "has no effect; connect with a token instead"
+        """Ignore the authentication of ROS 1, whose server no longer exists."""
+        problem = "it has no effect; connect with a token instead"
         self._link.session.rights.note(Refusal.IGNORED, "auth", problem)
         self._link.status("warning", f"auth: {problem}", op)

@@ -1,4 +1,4 @@
-"""The topics on which rosbridge publishes how many clients it has, and who they are."""
+"""The topics that rosbridge publishes about the number of its clients and their addresses."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ LATEST = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class ConnectedClient(Message, typename="rosbridge_msgs/msg/ConnectedClient"):
-    """A client, and since when it is connected."""
+    """A client, and the time of its connection."""
 
     ip_address: str = ""
     connection_time: Time = DEFAULT
 
 
 class ConnectedClients(Message, typename="rosbridge_msgs/msg/ConnectedClients"):
-    """The clients that are connected."""
+    """The connected clients."""
 
     clients: Annotated[list[ConnectedClient], Sequence[ConnectedClient]] = DEFAULT
 
 
 class ClientList:
-    """Publishes ``client_count`` and ``connected_clients``, which dashboards of rosbridge read.
+    """Publishes ``client_count`` and ``connected_clients``, which rosbridge dashboards read.
 
     Args:
         node: The node of the gateway.

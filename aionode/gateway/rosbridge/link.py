@@ -1,4 +1,4 @@
-"""The way back to one client of rosbridge: ops, fragments and statuses."""
+"""The way back to one rosbridge client: ops, fragments and statuses."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 __all__ = ["Link", "raw_id"]
 
 MOST_OP: Final = 60
-"""The longest name of an op that is told back, in characters."""
+"""The longest op name that is repeated in an answer, in characters."""
 
 ANSWERS: Final = {
     "call_service": ("service_response", "service"),
     "send_action_goal": ("action_result", "action"),
 }
-"""The ops that are always answered: by which op, and about what they are."""
+"""The ops that are always answered: the op of the answer, and the field that names the subject."""
 
 LEVELS: Final = ("none", "error", "warning", "info")
 
@@ -39,17 +39,17 @@ class Link:
         self._level = 0
 
     def set_level(self, level: str) -> None:
-        """Send statuses up to a level from now on, which clients can read that ask for it.
+        """From now on send statuses up to a level, for clients that request it.
 
         Raises:
             MessageError: there is no such level.
         """
         if level not in LEVELS:
-            raise MessageError("set_level.level", f"{level!r}, needs one of {', '.join(LEVELS)}")
+            raise MessageError("set_level.level", f"{level!r}; use one of {', '.join(LEVELS)}")
         self._level = LEVELS.index(level)
 
     def send(self, op: dict[str, Any], fragment_size: float = 0) -> None:
-        """Send an op, in fragments if it is longer than a size that the client has asked for."""
+        """Send an op, in fragments if it is longer than the size requested by the client."""
         frame = op_frame({key: value for key, value in op.items() if value is not None})
         if fragment_size:
             message_id = op.get("id")
@@ -60,12 +60,12 @@ class Link:
     def fail(self, error: Exception, op: dict[str, Any] | None = None, what: str = "") -> None:
         """Report a failure to the client, and in the log.
 
-        A call or a goal is answered in any case; of others it is told by a status.
+        A call or a goal is always answered; failures of other ops are reported by a status.
 
         Args:
             error: Why.
             op: The op.
-            what: What has failed; the op by default.
+            what: The name of what failed; by default the op.
         """
         name = str(op["op"])[:MOST_OP] if op is not None else ""
         text = str(error) or "no answer in time"
@@ -89,7 +89,7 @@ class Link:
 
 
 def raw_id(op: dict[str, Any]) -> msgspec.Raw | None:
-    """Return the id of an op, to be told back as it is; None without one, or if it is too long."""
+    """Return the id of an op, unchanged for the answer; None if it is missing or too long."""
     try:
         message_id = id_of(op)
     except MessageError:

@@ -1,4 +1,4 @@
-"""The ops of rosbridge by which a client serves services and actions itself."""
+"""The ops of rosbridge for services and actions served by the client itself."""
 
 from __future__ import annotations
 
@@ -28,24 +28,24 @@ SUCCEEDED: Final = 4
 CANCELED: Final = 5  # as in action_msgs/msg/GoalStatus
 
 MOST_PENDING: Final = 100
-"""Requests, or goals, that a client may leave unanswered for each of its services."""
+"""Number of requests, or goals, that a client may leave unanswered for each of its services."""
 
 CANCEL_SEC: Final = 5.0
-"""Time for which a goal that is canceled waits for the result of the client."""
+"""How long a canceled goal waits for the client's result."""
 
 
-GONE: Final = "the client that served it has gone, or serves it no more"
+GONE: Final = "the client that served it has gone, or has stopped serving it"
 
 TURNS: Final = 10
-"""Most turns of the loop that an error takes from the client to the caller."""
+"""The most loop iterations that an error takes from the client to the caller."""
 
 
 @dataclass
 class Offer:
-    """A service or an action that the client serves.
+    """A service or action that the client serves.
 
     Attributes:
-        name: Its name, as the client has it.
+        name: Its name, as given by the client.
         type_class: Its class.
         served: The service or action of the session.
         is_closed: Whether it has ended; later requests fail.
@@ -63,7 +63,7 @@ class Offer:
     goals: dict[str, ServerGoalHandle[Any, Any, Any]] = field(default_factory=dict)
 
     def ask(self, prefix: str) -> tuple[str, asyncio.Future[Op]]:
-        """Return the id of a new request, and the future of its answer.
+        """Return the id of a new request, and a future for its answer.
 
         Raises:
             ServiceError: too many are unanswered.
@@ -71,7 +71,7 @@ class Offer:
         if self.is_closed:
             raise ServiceError(self.name, GONE)
         if len(self.pending) >= MOST_PENDING:
-            problem = f"its client in a browser or program leaves {MOST_PENDING} unanswered"
+            problem = f"the client that serves it has left {MOST_PENDING} requests unanswered"
             raise ServiceError(self.name, problem)
         self.count += 1
         message_id = f"{prefix}:{self.name}:{self.count}"
@@ -80,14 +80,14 @@ class Offer:
         return message_id, answer
 
     async def close(self) -> None:
-        """End the service or action; requests and goals that are open fail."""
+        """End the service or action; open requests and goals fail."""
         self.is_closed = True
         problem = ServiceError(self.name, GONE)
         for answer in self.pending.values():
             if not answer.done():
                 answer.set_exception(problem)
         for _ in range(TURNS):
-            await checkpoint()  # the callers are told before the service or action is destroyed
+            await checkpoint()  # callers get an error before the service or action is destroyed
         if self.served is not None:
             self.served.close()
 
@@ -108,7 +108,7 @@ class Offers:
     # Services
 
     async def advertise_service(self, op: Op) -> None:
-        """Serve a service by asking the client; an earlier one of the same name ends."""
+        """Serve a service by asking the client; an earlier service of that name ends."""
         service, type_name = text(op, "service"), type_text(text(op, "type"), "srv")
         self._session.rights.decide("advertise", self._session.service_name(service), "")
         await withdraw(self._services, full_name(service))
@@ -118,7 +118,7 @@ class Offers:
         self._services[full_name(service)] = offer
 
     async def unadvertise_service(self, op: Op) -> None:
-        """End a service; the requests that are open fail."""
+        """End a service; its open requests fail."""
         if not await withdraw(self._services, full_name(text(op, "service"))):
             raise MessageError("unadvertise_service.service", f"{op['service']} is not advertised")
 
@@ -126,8 +126,9 @@ class Offers:
         """Return the response of the client.
 
         Raises:
-            ServiceError: the client says that it failed, or goes.
-            MessageError: its answer is no such response.
+            ServiceError: the client reports a failure, or leaves.
+            MessageError: its answer is no
+                such response.
         """
         message_id, answer = offer.ask("service_request")
         call = {"op": "call_service", "id": message_id, "service": offer.name}
@@ -136,7 +137,9 @@ class Offers:
             op = await answer
             if op.get("result") is False:
                 told = op.get("values")
-                problem = told if isinstance(told, str) and told else "the client says: failed"
+                problem = (
+                    told if isinstance(told, str) and told else "the client reported a failure"
+                )
                 raise ServiceError(offer.name, problem)
             return await self._message(offer.type_class.Response, op)
         except MessageError as error:
@@ -152,7 +155,7 @@ class Offers:
     # Actions
 
     async def advertise_action(self, op: Op) -> None:
-        """Serve an action by asking the client; an earlier one of the same name ends."""
+        """Serve an action by asking the client; an earlier action of that name ends."""
         action, type_name = text(op, "action"), type_text(text(op, "type"), "action")
         self._session.rights.decide("advertise", self._session.topic_name(action), "")
         await withdraw(self._actions, full_name(action))
@@ -162,7 +165,7 @@ class Offers:
         self._actions[full_name(action)] = offer
 
     async def unadvertise_action(self, op: Op) -> None:
-        """End an action; the goals that are open are aborted."""
+        """End an action; its open goals are aborted."""
         if not await withdraw(self._actions, full_name(text(op, "action"))):
             raise MessageError("unadvertise_action.action", f"{op['action']} is not advertised")
 
@@ -186,7 +189,9 @@ class Offers:
         except (AionodeError, TimeoutError) as error:
             self._link.fail(error, what=f"goal {offer.name}")
             if goal.is_active:
-                goal.abort(error_text=str(error) or f"canceled, and no result in {CANCEL_SEC:g} s")
+                goal.abort(
+                    error_text=str(error) or f"canceled, without a result within {CANCEL_SEC:g} s"
+                )
             return offer.type_class.Result()
         finally:
             del offer.pending[message_id], offer.goals[message_id]
@@ -198,22 +203,24 @@ class Offers:
         message_id: str,
         answer: asyncio.Future[Op],
     ) -> Op:
-        """Wait for the client's result; if the goal is canceled, tell the client first."""
+        """Wait for the client's result; if the goal is canceled, notify the client first."""
         try:
             return await asyncio.shield(answer)
         except asyncio.CancelledError:
             cancel = {"op": "cancel_action_goal", "id": message_id, "action": offer.name}
             self._link.send(cancel)
             if not goal.is_cancel_requested:
-                raise  # the server stops: nobody waits for a result
+                raise  # the server is stopping: nobody waits for a result
             async with asyncio.timeout(CANCEL_SEC):
                 return await answer
 
     async def _ended(self, offer: Offer, goal: ServerGoalHandle[Any, Any, Any], op: Op) -> Any:
-        """Set the state that the client gives a goal; return its result."""
+        """Set the state that the client reports for a goal, and return its result."""
         if op.get("result") is False:
             told = op.get("values")
-            goal.abort(error_text=told if isinstance(told, str) else "the client says: failed")
+            goal.abort(
+                error_text=told if isinstance(told, str) else "the client reported a failure"
+            )
             return offer.type_class.Result()
         result = await self._message(offer.type_class.Result, op)
         status = op.get("status")
@@ -230,7 +237,7 @@ class Offers:
         offer = self._offer(self._actions, "action", op)
         goal = offer.goals.get(text(op, "id"))
         if goal is None:
-            raise MessageError("action_feedback.id", f"{op['id']} is no goal under way")
+            raise MessageError("action_feedback.id", f"no goal {op['id']} is in progress")
         goal.publish_feedback(await self._message(offer.type_class.Feedback, op))
 
     async def action_result(self, op: Op) -> None:
@@ -243,32 +250,32 @@ class Offers:
         return await self._session.message_of(cls, values(op, "values"))
 
     def _offer(self, offers: dict[str, Offer], kind: str, op: Op) -> Offer:
-        """Return the service or action of the client that an op is about."""
+        """Return the client's service or action that an op refers to."""
         offer = offers.get(full_name(text(op, kind)))
         if offer is None:
             raise MessageError(f"{op['op']}.{kind}", f"{op[kind]} is not advertised by this client")
         return offer
 
     def _deliver(self, offers: dict[str, Offer], kind: str, op: Op) -> None:
-        """Hand an answer to the request that waits for it."""
+        """Pass an answer to the request that waits for it."""
         offer = self._offer(offers, kind, op)
         message_id = optional_text(op, "id")
         if message_id is None and len(offer.pending) == 1:
             (message_id,) = offer.pending  # older clients answer without an id
         answer = offer.pending.get(message_id or "")
         if answer is None or answer.done():
-            raise MessageError(f"{op['op']}.id", f"{message_id} is no request that waits")
+            raise MessageError(f"{op['op']}.id", f"no request {message_id} is waiting")
         answer.set_result(op)
 
     async def close(self) -> None:
-        """End everything: the client has gone."""
+        """End everything when the client has gone."""
         for offers in (self._services, self._actions):
             for name in list(offers):
                 await withdraw(offers, name)
 
 
 async def withdraw(offers: dict[str, Offer], name: str) -> bool:
-    """End the service or action of a name; return whether there was one."""
+    """End the service or action of a name, and return whether there was one."""
     offer = offers.pop(name, None)
     if offer is not None:
         await offer.close()

@@ -1,4 +1,4 @@
-"""The fields of an op of rosbridge, checked: no client is believed."""
+"""The fields of a rosbridge op, each of them checked."""
 
 from __future__ import annotations
 
@@ -47,25 +47,26 @@ POLICIES: Final[dict[str, Mapping[str, Any]]] = {
 }
 
 LONGEST_NAME: Final = 1000
-"""The longest name, id or word in an op, in characters: they are remembered, and told back."""
+"""The longest name, id or word in an op, in characters: they are stored, and repeated in
+answers."""
 
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
-"""Bytes that a fragment counts besides its content: empty ones take memory as well."""
+"""Bytes that a fragment counts besides its content, since even empty ones take memory."""
 
 
 def op_of(frame: str | bytes, most_parts: int) -> Op:
     """Parse the op in a frame, which is one JSON object.
 
     Raises:
-        MessageError: the frame is something else.
+        MessageError: the frame is anything else.
     """
     op = decoded(frame, most_parts)
     if not isinstance(op, dict):
-        raise MessageError("frame", "not a JSON object, which each frame of rosbridge is")
+        raise MessageError("frame", "not a JSON object, as every frame of rosbridge must be")
     if not isinstance(op.get("op"), str):
-        raise MessageError("frame", "no field 'op' of text, which each frame of rosbridge has")
+        raise MessageError("frame", "no text field 'op', which every frame of rosbridge must have")
     return op
 
 
@@ -75,19 +76,21 @@ def text(op: Op, name: str, default: str | None = None, most: int | None = LONGE
     Args:
         op: The op.
         name: The name of the field.
-        default: The value of a missing field; None if it has to be there.
+        default: The value of a missing field; None if the field is required.
         most: The longest text, in characters.
 
     Raises:
-        MessageError: the field is missing and has no default, is no text, or is too long.
+        MessageError: the field is missing without a default, is not text, or is too long.
     """
     value = op.get(name)
     if value is None and default is not None:
         return default
     if not isinstance(value, str):
-        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs text")
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}; use text")
     if most is not None and len(value) > most:
-        raise MessageError(f"{op['op']}.{name}", f"{len(value)} characters, at most {most} fit")
+        raise MessageError(
+            f"{op['op']}.{name}", f"{len(value)} characters, at most {most} are allowed"
+        )
     return value
 
 
@@ -97,10 +100,10 @@ def optional_text(op: Op, name: str) -> str | None:
 
 
 def id_of(op: Op) -> str | None:
-    """Return the id of an op as JSON, or None without one: clients choose any, such as a number.
+    """Return the id of an op as JSON, or None without one; it may be any JSON value.
 
     Raises:
-        MessageError: it is too long to be remembered.
+        MessageError: it is too long to be stored.
     """
     value = op.get("id")
     if value is None:
@@ -110,13 +113,13 @@ def id_of(op: Op) -> str | None:
     except OverflowError:  # a number of more than 64 bits
         told = json.dumps(value)
     if len(told) > LONGEST_NAME:
-        problem = f"{len(told)} characters, at most {LONGEST_NAME} fit"
+        problem = f"{len(told)} characters, at most {LONGEST_NAME} are allowed"
         raise MessageError(f"{op['op']}.id", problem)
     return told
 
 
 class Head(msgspec.Struct):
-    """The fields of an op that an answer needs."""
+    """The fields of an op needed for an answer."""
 
     op: str
     id: Any = None
@@ -125,7 +128,7 @@ class Head(msgspec.Struct):
 
 
 def head_of(frame: str | bytes) -> Op | None:
-    """Return what an answer needs of a frame that is too large to be decoded; None without it."""
+    """Return the answer fields of a frame that is too large to decode; None if it has none."""
     try:
         head = msgspec.json.decode(frame, type=Head)
     except (msgspec.DecodeError, UnicodeError, RecursionError):
@@ -134,7 +137,7 @@ def head_of(frame: str | bytes) -> Op | None:
 
 
 def number(op: Op, name: str, default: float = 0) -> float:
-    """Return a field that is a number of at least 0; a missing or negative one is `default`.
+    """Return a field that is a number of at least 0; for a missing or negative one, `default`.
 
     Raises:
         MessageError: the field is not a number.
@@ -143,15 +146,15 @@ def number(op: Op, name: str, default: float = 0) -> float:
     if value is None:
         return default
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs a number")
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}; use a number")
     return min(value, 1e9) if value >= 0 else default  # NaN is neither
 
 
 def values(op: Op, name: str) -> dict[str, Any] | list[Any]:
     """Return a field with the values of a message: a dict, or a list by position.
 
-    Without the field all values are defaults, as in rosbridge. That holds for ``args`` of null,
-    too, but null as a message is what a page sends that has none: nothing may move by it.
+    Without the field all values are defaults, as in rosbridge. The same applies to ``args`` of
+    null; but a message of null is sent by a page that has none, and must not move anything.
 
     Raises:
         MessageError: the field is something else.
@@ -160,19 +163,19 @@ def values(op: Op, name: str) -> dict[str, Any] | list[Any]:
     if name not in op or (value is None and name == "args"):
         return {}
     if not isinstance(value, dict | list):
-        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs an object or a list")
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}; use an object or a list")
     return value
 
 
 def given(op: Op, name: str) -> str:
-    """Return how an error describes the value of a field."""
+    """Return the description of a field's value for an error."""
     if name not in op:
         return "missing"
     return f"{shown(op[name])} ({type(op[name]).__name__})"
 
 
 def full_name(name: str) -> str:
-    """Return the name of a topic, service or action with a leading slash, which clients omit."""
+    """Return the full name of a topic, service or action; clients omit its leading slash."""
     return name if name.startswith("/") else f"/{name}"
 
 
@@ -180,7 +183,7 @@ def full_name(name: str) -> str:
 
 
 def profile(op: Op, start: QoSProfile) -> QoSProfile | None:
-    """Return `start` with the policies that an op asks for in ``qos``; None if it has none.
+    """Return `start` with the policies in an op's ``qos`` field; None if it has none.
 
     Raises:
         MessageError: a policy or its value is unknown.
@@ -190,7 +193,7 @@ def profile(op: Op, start: QoSProfile) -> QoSProfile | None:
         return None
     path = f"{op['op']}.qos"
     if not isinstance(asked, Mapping):
-        raise MessageError(path, f"{given(op, 'qos')}, needs an object of policies")
+        raise MessageError(path, f"{given(op, 'qos')}; use an object of policies")
     policies = {name: policy(name, value, f"{path}.{name}") for name, value in asked.items()}
     kept = {name: getattr(start, name) for name in ("history", "depth", "reliability")}
     kept["durability"] = start.durability
@@ -203,22 +206,22 @@ def policy(name: str, value: object, path: str) -> Any:
         options = POLICIES[name]
         choice = options.get(value.lower()) if isinstance(value, str) else None
         if choice is None:
-            raise MessageError(path, f"{shown(value)}, needs one of {', '.join(options)}")
+            raise MessageError(path, f"{shown(value)}; use one of {', '.join(options)}")
         return choice
     if name == "depth":
         if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= 10_000:
-            raise MessageError(path, f"{shown(value)}, needs a number of messages from 0 to 10000")
+            raise MessageError(path, f"{shown(value)}; use a number of messages from 0 to 10000")
         return value
     if name in {"deadline", "lifespan"}:
         return duration(value, path)
     raise MessageError(
         path,
-        "no such policy; there are history, depth, reliability, durability, deadline, lifespan",
+        "no such policy; use history, depth, reliability, durability, deadline or lifespan",
     )
 
 
 def duration(value: object, path: str) -> Duration:
-    """Return a duration that is given in seconds, as secs and nsecs, or as a word."""
+    """Return a duration, given in seconds, as secs and nsecs, or as a word."""
     if isinstance(value, str) and value.lower() in {"infinite", "best_available"}:
         return Duration()
     if isinstance(value, Mapping):
@@ -227,9 +230,7 @@ def duration(value: object, path: str) -> Duration:
         secs, nsecs = value, 0
     for part in (secs, nsecs):
         if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part <= 1e9:
-            raise MessageError(
-                path, f"{shown(value)}, needs seconds, secs and nsecs, or 'infinite'"
-            )
+            raise MessageError(path, f"{shown(value)}; use seconds, secs and nsecs, or 'infinite'")
     return Duration(nanoseconds=int(secs * 1e9) + int(nsecs))
 
 
@@ -237,18 +238,18 @@ def duration(value: object, path: str) -> Duration:
 
 
 class Part(NamedTuple):
-    """One fragment, and how many bytes it counts."""
+    """A fragment, and the number of bytes that it counts for."""
 
     data: str
     size: int
 
 
 class FragmentStore:
-    """The fragments of one client's messages that are not complete.
+    """The fragments of one client's incomplete messages.
 
     Args:
-        limit_bytes: How much is kept of messages that are incomplete, in bytes; the largest message
-            that a client may send.
+        limit_bytes: The most bytes of incomplete messages that are kept; the largest message that a
+            client may send.
     """
 
     def __init__(self, limit_bytes: int) -> None:
@@ -257,24 +258,25 @@ class FragmentStore:
         self._kept = 0
 
     def add(self, op: Op) -> str | None:
-        """Keep a fragment; return the whole message if it is complete now.
+        """Keep a fragment; return the whole message if it is now complete.
 
         Raises:
-            MessageError: the fragment is invalid, or too much is kept; then all of it is forgotten.
+            MessageError: the fragment is invalid, or too many bytes are kept; then all fragments
+                are discarded.
         """
         message_id, data = text(op, "id"), text(op, "data", most=None)
         num, total = op.get("num"), op.get("total")
         if type(total) is not int or not 0 < total <= MOST_FRAGMENTS:
             raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MOST_FRAGMENTS}")
         if type(num) is not int or not 0 <= num < total:
-            raise MessageError("fragment.num", f"{given(op, 'num')}, needs 0 to {total - 1}")
+            raise MessageError("fragment.num", f"{given(op, 'num')}, use 0 to {total - 1}")
         size = len(data.encode()) + len(message_id) + OVERHEAD
         parts = self._parts.setdefault(message_id, {})
         self._kept += size - parts.get(num, Part("", 0)).size
         if self._kept > self._limit:
             self._parts.clear()
             self._kept = 0
-            raise MessageError("fragment", f"more than {self._limit} bytes are incomplete")
+            raise MessageError("fragment", f"incomplete messages exceed {self._limit} bytes")
         parts[num] = Part(data, size)
         if len(parts) < total:
             return None

@@ -1,7 +1,7 @@
-"""The services of rosapi, which clients of rosbridge ask about the robot.
+"""The services of rosapi, by which rosbridge clients ask about the robot.
 
-The gateway answers them itself: no node of this name has to run, and what the policy hides from a
-client is not in its answers.
+The gateway answers them itself: no rosapi node has to run, and answers leave out what the policy
+hides from the client.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ Args = dict[str, Any]
 Answer = Callable[["Session", Args], Awaitable[dict[str, Any]]]
 
 SERVICES: Final[dict[str, tuple[tuple[str, ...], Answer]]] = {}
-"""The fields of the request, and the function that answers, for each service."""
+"""The request fields and the answering function of each service."""
 
 
 def service(name: str, *request: str) -> Callable[[Answer], Answer]:
-    """Declare the function that answers a service, given the fields of the request in order."""
+    """Declare the function that answers a service, given the request's fields in order."""
 
     def add(answer: Answer) -> Answer:
         SERVICES[name] = (request, answer)
@@ -55,17 +55,17 @@ async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) 
 
     Raises:
         MessageError: there is no such service, or a value of the request is invalid.
-        RefusedError: too many questions of the client wait.
-        AionodeError: something that the service is about is not known.
+        RefusedError: too many requests of the client are waiting.
+        AionodeError: the subject of the request is unknown.
     """
     if name not in SERVICES:
-        raise MessageError(f"/rosapi/{name}", f"no such service; there are {', '.join(SERVICES)}")
+        raise MessageError(f"/rosapi/{name}", f"no such service; use one of {', '.join(SERVICES)}")
     fields, make = SERVICES[name]
     values = dict(zip(fields, args, strict=False)) if isinstance(args, list) else args
     for field in fields:
         value = values.get(field, "")
         if not isinstance(value, str):
-            raise MessageError(f"/rosapi/{name}.{field}", f"{shown(value)}, needs text")
+            raise MessageError(f"/rosapi/{name}.{field}", f"{shown(value)}; use text")
     await session.graph.turn()
     return await make(session, {field: values.get(field, "") for field in fields})
 
@@ -79,7 +79,7 @@ def visible(names: Iterable[str]) -> list[str]:
 
 
 def short(type_name: str) -> str:
-    """Return the name of a type without its kind, for comparisons."""
+    """Return a type name without its kind, for comparison."""
     parts = type_name.split("/")
     return f"{parts[0]}/{parts[-1]}"
 
@@ -149,7 +149,7 @@ async def services(session: Session, _: Args) -> dict[str, Any]:
 
 @service("offered")
 async def offered(session: Session, _: Args) -> dict[str, Any]:
-    """Answer for pages what there is without infrastructure; rosapi itself has no such service."""
+    """Return for pages everything without infrastructure; rosapi itself has no such service."""
     found = session.graph.offered()
     return {
         "nodes": found.nodes,
@@ -180,7 +180,7 @@ TYPE_NAMES: Final = {
 
 
 def camel(name: str) -> str:
-    """Return the name of the type of a service of rosapi."""
+    """Return the type name of a rosapi service."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
@@ -193,7 +193,7 @@ async def service_node(session: Session, args: Args) -> dict[str, Any]:
 
 @service("service_providers", "service")
 async def service_providers(session: Session, args: Args) -> dict[str, Any]:
-    # The field has the name of a service, and what clients send is a type; both are understood.
+    # The field has the name of a service, but clients send a type; both are understood.
     names = {full_name(args["service"]), *of_type(session.graph.services(), args["service"])}
     providers = {node for name in names for node in session.graph.users(EndpointKind.SERVER, name)}
     return {"providers": sorted(providers)}
@@ -242,7 +242,7 @@ async def interfaces(_session: Session, _: Args) -> dict[str, Any]:
 
 
 def details_of(name: str, kind: str, part: str) -> None:
-    """Add a service that describes a part of a service or action type; or a message type."""
+    """Add a service that describes a part of a service or action type, or a message type."""
 
     @service(name, "type")
     async def details(session: Session, args: Args) -> dict[str, Any]:
@@ -250,7 +250,7 @@ def details_of(name: str, kind: str, part: str) -> None:
         found_class = await find.get(kind, session.action_class)(args["type"])
         described: Any = getattr(found_class, part, None) if part else found_class
         if not hasattr(described, "__ros_fields__"):
-            raise InterfaceNotFoundError(args["type"], problem=f"it is no type of kind {kind}")
+            raise InterfaceNotFoundError(args["type"], problem=f"it is not a type of kind {kind}")
         return {"typedefs": type_definitions(described)}
 
 
@@ -266,22 +266,22 @@ details_of("action_feedback_details", "action", "Feedback")
 
 
 def parameter_name(name: str) -> tuple[str, str]:
-    """Return node and parameter of ``/node:parameter``.
+    """Split ``/node:parameter`` into node and parameter.
 
     Raises:
         MessageError: the name has no colon.
     """
     node, colon, parameter = name.partition(":")
     if not (node and colon and parameter):
-        problem = f"{shown(name)}, needs a node and a parameter, as /node:parameter"
+        problem = f"{shown(name)}; use a node and a parameter, as /node:parameter"
         raise MessageError("name", problem)
     return full_name(node), parameter
 
 
 def failed(session: Session, error: Exception) -> dict[str, Any]:
-    """Return the fields of an answer with the reason why a parameter was not read or set."""
+    """Return the fields of an answer that give the reason why a parameter was not read or set."""
     session.rights.note_failure(error, "rosapi")
-    return {"successful": False, "reason": str(error) or "the node has not answered in time"}
+    return {"successful": False, "reason": str(error) or "the node did not answer in time"}
 
 
 @service("get_param", "name", "default_value")
@@ -308,7 +308,7 @@ async def parameter_json(session: Session, name: str) -> str:
 
 
 async def parameter_value(session: Session, name: str) -> Any:
-    """Return the value of a parameter; None if its node has none of this name."""
+    """Return the value of a parameter; None if its node does not have it."""
     node, parameter = parameter_name(name)
     found = (await session.parameters.get(node, [parameter])).get(parameter)
     return None if found is None else found.value
@@ -366,7 +366,7 @@ async def get_param_names(session: Session, _: Args) -> dict[str, Any]:
 @service("get_time")
 async def get_time(session: Session, _: Args) -> dict[str, Any]:
     time = stamp(session.now_ns())
-    # roslibpy reads the words of ROS 1.
+    # roslibpy reads the field names of ROS 1.
     return {"time": {**time, "secs": time["sec"], "nsecs": time["nanosec"]}}
 
 

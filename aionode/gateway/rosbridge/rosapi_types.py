@@ -1,4 +1,4 @@
-"""Descriptions of message classes as rosapi gives them."""
+"""Descriptions of message classes in the form of rosapi."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from aionode.message import Field, FieldType, Message, constants, fields, type_n
 __all__ = ["full_text", "type_definitions"]
 
 WORDS: Final = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet"}
-"""rosapi's names for types of fields, which are IDL's; others are unchanged."""
+"""rosapi's names for field types, which are those of IDL; others are unchanged."""
 
 
 def short_name(cls: type[Message]) -> str:
@@ -19,12 +19,12 @@ def short_name(cls: type[Message]) -> str:
 
 
 def type_definitions(cls: type[Message]) -> list[dict[str, Any]]:
-    """Return a ``rosapi_msgs/msg/TypeDef`` for a message class, and for each that it contains."""
+    """Return a ``rosapi_msgs/msg/TypeDef`` for a message class and each class nested in it."""
     return [type_definition(message_class) for message_class in with_nested(cls)]
 
 
 def with_nested(cls: type[Message]) -> list[type[Message]]:
-    """Return a message class and those of its fields, at any depth, each once."""
+    """Return a message class and those nested in it at any depth, each once."""
     classes = {type_name(cls): cls}
 
     def visit(inner: type[Message]) -> None:
@@ -52,14 +52,14 @@ def type_definition(cls: type[Message]) -> dict[str, Any]:
 
 
 def field_type(type_: FieldType) -> str:
-    """Return the name of a field's type, without marks of arrays and bounds."""
+    """Return the name of a field's type, without array and bound markers."""
     if type_.nested is not None:
         return short_name(type_.nested)
     return "uint8" if type_.kind == "char" else WORDS.get(type_.kind, type_.kind)
 
 
 def array_length(type_: FieldType) -> int:
-    """Return the length of an array, 0 for that of a sequence, and -1 for a single value."""
+    """Return the length of an array, 0 for a sequence, and -1 for a single value."""
     if type_.container == "single":
         return -1
     return type_.size if type_.container == "array" else 0
@@ -78,8 +78,8 @@ def example(field: Field) -> str:
 
 
 def full_text(cls: type[Message]) -> str:
-    """Return the definition of a message type, and of those that it needs, in one text."""
-    from aionode.idl import definition_text  # of all clients, Foxglove's asks for texts
+    """Return the definitions of a message type and all types that it needs, in one text."""
+    from aionode.idl import definition_text  # of all clients, only Foxglove's requests texts
 
     root, *needed = with_nested(cls)
     parts = [f"{'=' * 80}\nMSG: {short_name(part)}\n{definition_text(part)}" for part in needed]

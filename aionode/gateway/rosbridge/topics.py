@@ -38,20 +38,20 @@ __all__ = ["Topics"]
 Op = dict[str, Any]
 
 COMPRESSIONS: Final = ("none", "png", "cbor", "cbor-raw")
-"""From the weakest: one subscription of a client has the strongest that any of its ids asks for."""
+"""From the weakest on: a client's subscription uses the strongest that any of its ids requests."""
 
 DEFAULT_DEPTH: Final = 100
-"""Messages of each topic that wait for a client that names no ``queue_length``; with a
-``throttle_rate`` it is the newest alone, since what waits for its time is late."""
+"""Messages per topic that wait for a client without a ``queue_length``; with a ``throttle_rate``
+only the newest waits, since it is late already."""
 
 PUBLISHER_DEPTH: Final = 100
 
 MOST_IDS: Final = 64
-"""Ids that a client may use for one topic."""
+"""Number of ids that a client may use for one topic."""
 
 LATCH_SEC: Final = 1.0
-"""Time for which a message waits for subscriptions that appear after it, unless latched: a client
-that advertises and publishes at once reaches the subscriptions that are just being matched."""
+"""How long a message waits for subscriptions that appear after it, unless latched: a client that
+advertises and publishes at once reaches subscriptions that are just being matched."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Wish:
 
 
 def wish_of(op: Op) -> Wish:
-    """Return the wish in an op ``subscribe``.
+    """Return the wish in a ``subscribe`` op.
 
     Raises:
         MessageError: a field is invalid.
@@ -84,7 +84,7 @@ def wish_of(op: Op) -> Wish:
     compression = text(op, "compression", "none")
     if compression not in COMPRESSIONS:
         fitting = ", ".join(COMPRESSIONS)
-        raise MessageError("subscribe.compression", f"{compression!r}, needs one of {fitting}")
+        raise MessageError("subscribe.compression", f"{compression!r}; use one of {fitting}")
     period_sec = number(op, "throttle_rate") / 1000
     return Wish(
         type_text(text(op, "type", ""), "msg") or None,
@@ -97,7 +97,7 @@ def wish_of(op: Op) -> Wish:
 
 
 def combined(wishes: list[Wish]) -> Wish:
-    """Return one wish for all ids of one client: the fastest, the longest queue, the newest QoS."""
+    """Combine the wishes of a client's ids: the fastest, the longest queue, the newest QoS."""
     return Wish(
         next((wish.type_name for wish in wishes if wish.type_name is not None), None),
         min(wish.period_sec for wish in wishes),
@@ -110,7 +110,7 @@ def combined(wishes: list[Wish]) -> Wish:
 
 @dataclass
 class View:
-    """The messages of one topic, as one client gets them."""
+    """The messages of one topic in the form that one client gets."""
 
     wish: Wish
     subscribed: Subscribed
@@ -143,7 +143,7 @@ class Topics:
         ids.add(message_id)
 
     async def unadvertise(self, op: Op) -> None:
-        """Take back the topic advertised with one id, or with all."""
+        """Withdraw the topic advertised with one id, or with all ids."""
         topic, message_id = self._session.topic_name(text(op, "topic")), id_of(op)
         ids = self._advertised.get(topic)
         if ids is None or (message_id is not None and message_id not in ids):
@@ -154,7 +154,7 @@ class Topics:
             await self._session.unadvertise(topic)
 
     async def publish(self, op: Op, arrived_ns: int | None = None) -> None:
-        """Publish a message; a topic that is not advertised is advertised now, with its type."""
+        """Publish a message; a topic that is not advertised is now advertised with its type."""
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type", ""), "msg") or None
         if topic not in self._advertised:
@@ -164,7 +164,7 @@ class Topics:
         await self._session.publish(topic, message, type_name, arrived_ns=arrived_ns)
 
     async def _advertise(self, topic: str, type_name: str | None, op: Op) -> None:
-        """Create a publisher, unless no subscription of the topic would receive from it.
+        """Create a publisher, unless no subscription of the topic could receive from it.
 
         Raises:
             RefusedError: the policy does not allow it.
@@ -180,8 +180,8 @@ class Topics:
     async def subscribe(self, op: Op) -> None:
         """Send the client the messages of a topic.
 
-        Each op opens the subscription anew, so that a second one of a client gets the messages
-        that publishers keep for late ones, as the first did.
+        Each op subscribes anew, so that a client's second one also gets the messages that
+        publishers keep for late subscriptions.
         """
         topic, message_id = text(op, "topic"), id_of(op)
         earlier = self._wishes.get(topic, {})
@@ -191,7 +191,7 @@ class Topics:
         self._wishes[topic] = wishes
 
     async def unsubscribe(self, op: Op) -> None:
-        """End one id of a subscription, or all of a topic."""
+        """End one id of a subscription, or all ids of a topic."""
         topic, message_id = text(op, "topic"), id_of(op)
         wishes = self._wishes.get(topic)
         if wishes is None or (message_id is not None and message_id not in wishes):
@@ -207,9 +207,9 @@ class Topics:
         self._wishes[topic] = left
 
     async def _open(self, topic: str, wish: Wish) -> None:
-        """Subscribe to a topic; the earlier subscription of the client then ends."""
+        """Subscribe to a topic; the client's earlier subscription then ends."""
         earlier = self._views.get(topic)
-        # The end of the earlier one empties its queue, which is therefore another one.
+        # The end of the earlier subscription empties its queue, so the new one uses another queue.
         queue = 0 if earlier is None else 1 - earlier.queue
         subscribed = await self._session.subscribe(
             topic,
@@ -240,7 +240,7 @@ class Topics:
         def frame(received: Received) -> Frame | None:
             try:
                 encoded = received.once(kind, make)
-            except AionodeError as error:  # a peer sent bytes that are no message of the type
+            except AionodeError as error:  # a peer sent bytes that are not a message of the type
                 self._session.rights.note(Refusal.UNREADABLE, f"subscribe {topic}", str(error))
                 self._link.status("error", f"subscribe: {error}")
                 return None
@@ -249,7 +249,7 @@ class Topics:
         return frame
 
     def _fragments(self, frame: Frame, wish: Wish) -> Frame:
-        """Return a frame that leaves in fragments, if it is text."""
+        """Return a frame that is sent in fragments, if it is text."""
         if isinstance(frame, bytes) or (isinstance(frame, LongFrame) and not frame.is_text):
             return frame
         self._fragmented += 1
@@ -257,7 +257,7 @@ class Topics:
 
 
 def frame_of(compression: str, topic: str, received: Received) -> Frame:
-    """Return the frame of a message, for a topic by the name that the client uses."""
+    """Return the frame of a message, under the topic name that the client uses."""
     if compression == "cbor-raw":
         return cbor_raw_frame(topic, received.raw, received.time_ns)
     if compression == "cbor":
@@ -267,7 +267,7 @@ def frame_of(compression: str, topic: str, received: Received) -> Frame:
 
 
 def prepare_of(compression: str, topic: str) -> Prepare | None:
-    """Return a function that encodes large messages; None if that takes next to no time."""
+    """Return a function that encodes large messages; None if encoding takes next to no time."""
     prepared = {"none": prepare_text, "png": prepare_png}.get(compression)
     return None if prepared is None else partial(prepared, topic)
 
@@ -298,14 +298,14 @@ def refuse_more(ids: Collection[str | None], message_id: str | None, field: str)
     """Refuse one more id of a topic beyond `MOST_IDS`.
 
     Raises:
-        MessageError: there are as many.
+        MessageError: the topic has that many ids.
     """
     if message_id not in ids and len(ids) >= MOST_IDS:
-        raise MessageError(field, f"the topic has {MOST_IDS} ids already, which is the limit")
+        raise MessageError(field, f"the topic already has {MOST_IDS} ids, which is the limit")
 
 
 def publisher_profile(op: Op) -> QoSProfile:
-    """Return the QoS of a publisher that a client asks for."""
+    """Return the QoS of a publisher that a client requests."""
     depth = int(number(op, "queue_size")) or PUBLISHER_DEPTH
     is_latched = bool(op.get("latch"))
     start = QoSProfile(

@@ -21,6 +21,6 @@ async def serve(websocket: WebSocket, session: Session, subprotocol: str | None 
     Args:
         websocket: The WebSocket of the client.
         session: The session of the client.
-        subprotocol: The name that the client has for the protocol; None without one.
+        subprotocol: The client's name of the protocol; None without one.
     """
     await exchange(websocket, session, serve_frames, subprotocol)

@@ -1,1 +1,1 @@
-"""The web server, and what each request passes first."""
+"""The web server, and the door that each request passes first."""

@@ -1,4 +1,4 @@
-"""A connection of a client, whatever is spoken over it, and what all connections share."""
+"""A connection of a client, for any protocol, and what all connections share."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ PHRASES: Final = {status.value: status.phrase.encode() for status in HTTPStatus}
 """The reason phrase of each status."""
 
 GOODBYE_SEC: Final = 5.0
-"""Longest time for a client to read the end of a connection, in seconds."""
+"""How long a client may take to read the end of a connection, in seconds."""
 
 SPARE: Final = 16
-"""Connections beyond the number of clients: those for pages, and those that are told that there are
-too many."""
+"""Connections beyond the limit of clients: for pages, and for clients that are refused as too
+many."""
 
 
 class Shared:
@@ -46,8 +46,8 @@ class Shared:
         tasks: The group in which requests are handled.
 
     Attributes:
-        framing: Makes the frames of all WebSockets.
-        connections: Those that are open.
+        framing: Frames messages for all WebSockets.
+        connections: The open connections.
         requests: The tasks of the application.
         has_lost_one: Set when a connection has ended.
     """
@@ -72,8 +72,8 @@ class Shared:
     def admit(self, connection: Connection) -> bool:
         """Accept a new connection if there is room, and return whether there is.
 
-        The oldest connection without a session makes room: a client says at once what it wants, and
-        those who only keep connections, or read none of what is public, must not keep it out.
+        The oldest connection without a session makes room: clients state at once what they want, so
+        those that only hold connections, or read nothing, must not keep others out.
         """
         self.connections.add(connection)
         if len(self.connections) <= self.policy().limits.clients + SPARE:
@@ -85,16 +85,16 @@ class Shared:
         if oldest is None:
             return False
         oldest.abort()
-        self.connections.discard(oldest)  # its end is told in the next turn only
+        self.connections.discard(oldest)  # its end is reported only in the next loop iteration
         return True
 
 
 class Connection(asyncio.Protocol):
-    """A connection: what arrives is handed on in parts, as fast as it is handled.
+    """A connection: received data is passed on in parts, as fast as they are processed.
 
     Attributes:
-        made_s: When it was made, by the clock of the loop.
-        has_session: Whether a session uses it, as the application says.
+        made_s: The loop time at which it was made.
+        has_session: Whether a session uses it; set by the application.
         transport: Its transport.
         writable: Set while the client has read enough of what was sent.
         is_lost: Whether it has ended.
@@ -112,7 +112,7 @@ class Connection(asyncio.Protocol):
         self.writable.set()
 
     def use(self, transport: asyncio.Transport) -> None:
-        """Begin with a transport."""
+        """Start with a transport."""
         self.transport = transport
         self._portions = Portions(transport, self.take, self.is_ready)
 
@@ -126,26 +126,26 @@ class Connection(asyncio.Protocol):
         self.writable.clear()
 
     def resume_writing(self) -> None:
-        """Send again."""
+        """Resume sending."""
         self.writable.set()
 
     def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002  # asyncio's name
         """Discard pending data, and notify the server, which may wait for its last connection."""
         self.is_lost = True
         self._portions.close()
-        self.writable.set()  # nobody else sets it any more
+        self.writable.set()  # nothing else sets it after this
         self._shared.connections.discard(self)
         self._shared.has_lost_one.set()
 
     def silent_sec(self) -> float:
-        """Return how long nothing has arrived, in seconds."""
+        """Return for how long nothing has arrived, in seconds."""
         return self._loop.time() - self._heard_s
 
     def abort(self) -> None:
         """Close the connection without a message, which nobody would read."""
         self.transport.abort()
 
-    # What is spoken
+    # The protocol
 
     def take(self, data: bytes) -> None:
         """Process a part of the received data."""
@@ -156,7 +156,7 @@ class Connection(asyncio.Protocol):
         raise NotImplementedError
 
     def end(self) -> None:
-        """End, as the server does."""
+        """End when the server ends."""
         raise NotImplementedError
 
 
@@ -188,12 +188,12 @@ def address(transport: asyncio.Transport, end: str) -> tuple[str, int] | None:
 
 
 def is_encrypted(transport: asyncio.Transport) -> bool:
-    """Return whether a connection is one of TLS."""
+    """Return whether a connection uses TLS."""
     return transport.get_extra_info("ssl_object") is not None
 
 
 def response(status: int, headers: Iterable[tuple[bytes, bytes]]) -> h11.Response:
-    """Return the head of an answer, with its time."""
+    """Return the head of an answer, with the current date."""
     now = email.utils.formatdate(usegmt=True).encode()
     return h11.Response(
         status_code=status, headers=[(b"date", now), *headers], reason=PHRASES.get(status, b"")

@@ -1,4 +1,4 @@
-"""The door: every request passes it before any code of a way in runs."""
+"""The door: every request passes it before any code of a protocol runs."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Receive = Callable[[], Awaitable[Message]]
 Send = Callable[[Message], Awaitable[None]]
 
 PUBLIC: Final = ("/page/",)
-"""The files of the page: nothing of the robot is in them, and a page asks for them without a token.
-"""
+"""The files of the page: they reveal nothing of the robot, and a page requests them without a
+token."""
 
 MOST_WRONG: Final = 10
 """Number of wrong tokens accepted from one place in a burst."""
 
 WRONG_NS: Final = S_TO_NS
-"""Time after which one of them is forgotten, in nanoseconds."""
+"""Time after which a wrong token is forgotten, in nanoseconds."""
 
 MOST_PLACES: Final = 10_000
 
@@ -41,7 +41,8 @@ HEADERS: Final = [
     (b"x-frame-options", b"DENY"),
     (b"referrer-policy", b"no-referrer"),
 ]
-"""On each answer: other origins may not embed it, and no address with a token is passed on."""
+"""Headers of every answer: other origins may not embed it, and addresses with tokens are not passed
+on."""
 
 STATUS: Final = {
     "unauthorized": 401,
@@ -61,7 +62,7 @@ STATUS: Final = {
 class Door:
     """Identifies the client of each request, and refuses requests of pages of other origins.
 
-    In the scope it leaves ``aionode.credentials``.
+    It adds ``aionode.credentials`` to the scope.
     """
 
     def __init__(self, app: Any, clients: Clients) -> None:
@@ -81,8 +82,8 @@ class Door:
         policy = self._clients.policy
         answer = Answer(send, allowed_origin(credentials.origin, policy.page_origins))
         try:
-            # Before its token is looked at: what another page sends says nothing about who guesses.
-            # A browser shows the origin with each script, even of the gateway's own page.
+            # Before the token is checked: requests made by another page say nothing about who is
+            # guessing. A browser sends the origin with each script, even of the gateway's own page.
             if is_script(scope):
                 check_host(credentials, policy.hosts)
             else:
@@ -105,7 +106,7 @@ class Door:
         """Refuse a client that the policy does not know.
 
         Raises:
-            RefusedError: it does not, or too many wrong tokens came from where the client is.
+            RefusedError: the policy does not know it, or too many wrong tokens came from its place.
         """
         if credentials.token:
             guesses.check(credentials.address)
@@ -118,10 +119,10 @@ class Door:
 
 
 class Guesses:
-    """Limits token attempts: a burst per place, and then one per second.
+    """Limits attempts with tokens: a burst per place, and then one per second.
 
-    Right tokens of that place have to wait as well, or an attacker would see at once which is
-    right. Clients that are connected stay so.
+    Valid tokens from that place have to wait as well, or an attacker would see at once which one is
+    valid. Clients that are already connected stay connected.
 
     Args:
         now_ns: The steady clock, in nanoseconds.
@@ -129,10 +130,10 @@ class Guesses:
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
-        # Forgets first from where none came for longest.
+        # Forgets first the place with the least recent attempt.
         self._free_ns: Recent[str, int] = Recent(
             MOST_PLACES
-        )  # when a place has no wrong tokens left, by place
+        )  # by place: when none of its wrong tokens count any more
 
     def check(self, address: str) -> None:
         """Refuse a token if too many wrong ones came from the same place.
@@ -143,7 +144,9 @@ class Guesses:
         ahead_ns = self._free_ns.get(place_of(address), 0) - self._now_ns()
         if ahead_ns > (MOST_WRONG - 1) * WRONG_NS:
             raise RefusedError(
-                f"client of {address}", "too many wrong tokens came from there; wait", "too_fast"
+                f"client of {address}",
+                "too many wrong tokens came from there; try again later",
+                "too_fast",
             )
 
     def note_wrong(self, address: str) -> None:
@@ -161,16 +164,16 @@ def is_public(scope: Message) -> bool:
 
 
 def is_script(scope: Message) -> bool:
-    """Return whether a request is for what the page consists of; other origins cannot embed it."""
+    """Return whether a request is for a file of the page; other origins cannot embed it."""
     is_read = scope["type"] == "http" and scope["method"] in {"GET", "HEAD"}
     return is_read and bool(scope["path"].startswith(PUBLIC))
 
 
 def hides_its_page(scope: Message, credentials: Credentials) -> bool:
-    """Return whether a browser asks without saying for which page, as for images over plain HTTP.
+    """Return whether a browser request does not tell its page, as for images over plain HTTP.
 
-    Any page can put a token into the address of an image. So such tokens are counted by themselves:
-    they do not keep out a client that shows its token elsewhere.
+    Any page can put a token into the address of an image, so such tokens are counted separately:
+    they do not lock out a client that presents its token elsewhere.
     """
     if credentials.origin is not None or credentials.sec_fetch_site:
         return False
@@ -180,21 +183,21 @@ def hides_its_page(scope: Message, credentials: Credentials) -> bool:
 
 
 def is_preflight(scope: Message) -> bool:
-    """Return whether a browser asks what a page of another origin may do."""
+    """Return whether a request is a browser's preflight for a page of another origin."""
     return bool(scope["type"] == "http" and scope["method"] == "OPTIONS")
 
 
 def allowed_origin(origin: str | None, origins: frozenset[str]) -> str | None:
-    """Return the origin of a page that may read the answers, if it is not the gateway's own."""
+    """Return the origin of a page that may read the answers, if it is not the gateway's."""
     return origin if origin in origins else None
 
 
 class Answer:
-    """Sends an answer, with the headers that each one has.
+    """Sends an answer, with the headers that all answers have.
 
     Args:
         send: Sends it.
-        origin: The origin of a page that may read it, if it is not the gateway's own.
+        origin: The origin of a page that may read it, if it differs from the gateway's own.
 
     Attributes:
         has_begun: Whether its first part was sent.
@@ -218,7 +221,7 @@ class Answer:
 
 
 async def preflight(send: Send) -> None:
-    """Answer a browser that asks for a page which may connect."""
+    """Answer the preflight of a browser whose page may connect."""
     headers = [
         (b"access-control-allow-methods", b"GET, POST, PUT"),
         (b"access-control-allow-headers", b"authorization, content-type"),
@@ -229,7 +232,7 @@ async def preflight(send: Send) -> None:
 
 
 def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
-    """Return a `receive` that refuses request bodies beyond a size."""
+    """Return a `receive` that refuses request bodies above a size."""
     if scope["type"] != "http":
         return receive
     received = 0
@@ -246,7 +249,7 @@ def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
 
 
 async def refuse(scope: Message, send: Send, error: RefusedError) -> None:
-    """Answer with the reason, and the HTTP status that fits it."""
+    """Answer with the reason, and the corresponding HTTP status."""
     kind = "http.response" if scope["type"] == "http" else "websocket.http.response"
     body = msgspec.json.encode({"error": str(error), "code": error.code})
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]

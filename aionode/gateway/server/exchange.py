@@ -23,16 +23,16 @@ __all__ = ["TRY_AGAIN_LATER", "close", "exchange"]
 Serve: TypeAlias = Callable[["Session", AsyncIterator[bytes | str]], Awaitable[None]]
 
 POLICY_VIOLATION: Final = 1008
-"""Closes a WebSocket whose client sends no ops, or reads no answers (RFC 6455)."""
+"""Closes a WebSocket whose client sends no valid ops, or reads no answers (RFC 6455)."""
 
 TRY_AGAIN_LATER: Final = 1013
-"""Closes a WebSocket whose place another client takes (IANA's registry of RFC 6455)."""
+"""Closes a WebSocket whose place another client takes (IANA's registry for RFC 6455)."""
 
 CLOSING_SEC: Final = 1.0
 """How long a client that reads nothing may delay the end of its WebSocket, in seconds."""
 
 MOST_REASON: Final = 120
-"""The longest reason of an end, in bytes of UTF-8: RFC 6455 allows 123."""
+"""The longest reason in a close frame, in bytes of UTF-8: RFC 6455 allows 123."""
 
 
 async def close(websocket: WebSocket, code: int, reason: str) -> None:
@@ -50,8 +50,8 @@ async def exchange(
 
     Args:
         websocket: The WebSocket, which is accepted here.
-        session: The session of the client; its outbox has the frames for the client.
-        serve: Takes the frames of the client, until they end, or it has had enough of them.
+        session: The session of the client, whose outbox holds the frames for it.
+        serve: Consumes the frames of the client, until they end or it stops.
         subprotocol: The name of the protocol.
     """
     await websocket.accept(subprotocol)
@@ -69,14 +69,12 @@ async def exchange(
         await serve(session, frames())
         writing.cancel()
         if not has_left:
-            session.rights.note(
-                Refusal.DISCONNECTED, "connection", "too many frames that are malformed"
-            )
-            await websocket.close(POLICY_VIOLATION, "too many frames that are malformed")
+            session.rights.note(Refusal.DISCONNECTED, "connection", "too many malformed frames")
+            await websocket.close(POLICY_VIOLATION, "too many malformed frames")
 
 
 async def write(websocket: WebSocket, outbox: Outbox) -> None:
-    """Send the frames of the outbox; if that is closed, the client is disconnected."""
+    """Send the frames of the outbox; if the outbox is closed, disconnect the client."""
     try:
         async for frame in outbox:
             if isinstance(frame, Fragmented):
@@ -86,6 +84,6 @@ async def write(websocket: WebSocket, outbox: Outbox) -> None:
                 await websocket.send_text(frame)
             else:
                 await websocket.send({"type": "websocket.send", "bytes": frame})
-        await websocket.close(POLICY_VIOLATION, "too many answers that the client does not read")
+        await websocket.close(POLICY_VIOLATION, "too many unread answers")
     except WebSocketDisconnect:
-        return  # the reader is told as well
+        return  # the reading side is notified as well

@@ -1,4 +1,4 @@
-"""HTTP/1.1 over a connection, by h11, which does no input and output of its own."""
+"""HTTP/1.1 over a connection, by h11, which does no I/O of its own."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ MOST_HEAD: Final = 16 << 10
 """The largest head of a request, in bytes."""
 
 MOST_TOGETHER: Final = 64 << 10
-"""Bytes of a part of an answer that are copied, so that it leaves with the parts beside it."""
+"""Size up to which a part of an answer is copied, so that it is sent together with others."""
 
 MOST_BODY: Final = 64 << 10
-"""Bytes of a body that wait for the application before no more are read."""
+"""Bytes of a body that may wait for the application before reading pauses."""
 
 
 class HttpConnection(Connection):
-    """A connection that must send its request, and read the answer, within some seconds.
+    """A connection whose client must send its request, and read the answer, within some seconds.
 
-    The application finds in the state of the scope who the client is by its TLS certificate.
+    The scope's state tells the application the identity in the client's TLS certificate.
     """
 
     def __init__(self, shared: Shared) -> None:
@@ -56,7 +56,7 @@ class HttpConnection(Connection):
     # Requests
 
     def is_ready(self) -> bool:
-        """Return whether more is read: no request waits for the one before, and no body is full."""
+        """Return whether to read more: no request waits for another, and no body buffer is full."""
         return not self._is_paused
 
     def take(self, data: bytes) -> None:
@@ -65,7 +65,7 @@ class HttpConnection(Connection):
         self._handle_events()
 
     def go_on(self) -> None:
-        """Continue reading, as the application has consumed what was read."""
+        """Continue reading after the application has consumed what was read."""
         self._is_paused = False
         self._portions.go_on()
 
@@ -115,7 +115,7 @@ class HttpConnection(Connection):
         websocket.begin(self.transport, scope, rest)
 
     def _refuse(self, status: int) -> None:
-        """Answer what is not HTTP with an error, and close the connection."""
+        """Answer anything that is not HTTP with an error, and close the connection."""
         if self._http.our_state in {h11.IDLE, h11.SEND_RESPONSE}:
             headers = [(b"content-type", b"text/plain"), (b"connection", b"close")]
             text = b"this cannot be read as a request of HTTP"
@@ -125,7 +125,7 @@ class HttpConnection(Connection):
     # Answers
 
     def write(self, *events: h11.Event) -> None:
-        """Send parts of an answer, together if they are not large."""
+        """Send parts of an answer, joined if they are small."""
         small: list[bytes] = []
         for event in events:
             data = self._http.send(event) or b""
@@ -150,7 +150,7 @@ class HttpConnection(Connection):
         self._begin_next()
 
     def _begin_next(self) -> None:
-        """Begin with the next request, when the last one is read and answered."""
+        """Start the next request, once the last one is read and answered."""
         if self._http.our_state is h11.DONE and self._http.their_state is h11.DONE:
             self._http.start_next_cycle()
             self._request = None
@@ -178,7 +178,7 @@ class HttpConnection(Connection):
         left = unread_bytes(self.transport)
         if left:
             is_idle = self._unread_bytes is not None and left >= self._unread_bytes
-        else:  # the application itself limits the time for the body
+        else:  # the application limits the time for the body
             is_idle = self._request is None or self._request.is_answered
         self._unread_bytes = left or None
         if is_idle:
@@ -189,8 +189,8 @@ class HttpConnection(Connection):
     def lose_after(self, seconds: float) -> None:
         """Treat a client as disconnected when its host has acknowledged nothing for some seconds.
 
-        TCP by itself waits for a quarter of an hour. Only Linux is told, and only the host answers:
-        a program that is frozen is not noticed.
+        TCP by itself waits for a quarter of an hour. This works on Linux only, and only the host
+        acknowledges: a frozen program goes unnoticed.
         """
         connected = self.transport.get_extra_info("socket")
         if connected is not None and hasattr(socket, "TCP_USER_TIMEOUT"):
@@ -222,7 +222,7 @@ class Request:
 
     Attributes:
         changed: Set when `receive` has something to return.
-        more_body: Whether a part of the body has not arrived.
+        more_body: Whether parts of the body are still to arrive.
         is_answered: Whether the answer is complete.
     """
 
@@ -235,7 +235,7 @@ class Request:
         self._body = bytearray()
         self.changed = asyncio.Event()
         self.more_body = True
-        self._head: h11.Response | None = None  # leaves with the first part of the body
+        self._head: h11.Response | None = None  # sent with the first part of the body
         self._is_begun = False
         self.is_answered = False
 
@@ -256,7 +256,7 @@ class Request:
                 self._connection.transport.close()
 
     def add(self, data: bytes) -> None:
-        """Add a part of the body; what comes after the answer is discarded."""
+        """Add a part of the body; anything after the answer is discarded."""
         if not self.is_answered:
             self._body += data
             self.changed.set()
@@ -272,7 +272,7 @@ class Request:
         self.changed.set()
 
     async def receive(self) -> dict[str, Any]:
-        """Return the next part of the body, or that the client has left."""
+        """Return the next part of the body, or that the client has disconnected."""
         if self._http.they_are_waiting_for_100_continue and not self._is_over:
             self._connection.write(
                 h11.InformationalResponse(status_code=100, headers=[], reason=b"Continue")
@@ -292,7 +292,7 @@ class Request:
         return self.is_answered or self._connection.transport.is_closing()
 
     async def send(self, message: Any) -> None:
-        """Send a part of the answer, when the client has read enough; nothing to one that left."""
+        """Send a part of the answer once the client has read enough, unless it has disconnected."""
         await self._connection.writable.wait()
         if self._connection.transport.is_closing():
             return
@@ -318,7 +318,7 @@ class Request:
 
 
 def asks_for_websocket(request: h11.Request) -> bool:
-    """Return whether a request wants to become a WebSocket, as only GET without a body can."""
+    """Return whether a request asks for a WebSocket, which only GET without a body can do."""
     headers: dict[bytes, bytes] = {}
     for name, value in request.headers:
         headers[name] = headers[name] + b"," + value if name in headers else value
@@ -330,9 +330,9 @@ def asks_for_websocket(request: h11.Request) -> bool:
 
 
 def unread_bytes(transport: asyncio.Transport) -> int:
-    """Return how much of what was sent is on its way: here, and in the buffers of the kernel.
+    """Return the number of sent bytes not yet received: here, and in the kernel's buffers.
 
-    A socket tells that it has room only when a third of its buffer has left.
+    A socket reports free space only when a third of its buffer has been sent.
     """
     waiting = transport.get_write_buffer_size()
     connected = transport.get_extra_info("socket")

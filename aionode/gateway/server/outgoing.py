@@ -23,17 +23,18 @@ SLICE: Final = 256 << 10
 """Number of bytes of a large frame to pass to the transport at a time."""
 
 SLICES_IN_A_TURN: Final = 4
-"""Number of slices to send before the event loop runs: they take about half a millisecond."""
+"""Number of slices to send before yielding to the event loop: they take about half a
+millisecond."""
 
 MOST_CONTROL_BYTES: Final = 1 << 20
-"""Bytes that may wait when a pong is added: a client may ask for many and read none."""
+"""Bytes that may wait when a pong is added: a client may request many and read none."""
 
 
 class Framing:
-    """Puts heads of WebSocket frames before messages.
+    """Puts WebSocket frame headers before messages.
 
-    A server masks nothing, so that a frame is the same for all clients, which get it one after
-    another: the last one is kept.
+    A server masks nothing, so a frame is the same for all clients, which get it one after another:
+    the last one is cached.
     """
 
     def __init__(self) -> None:
@@ -41,7 +42,7 @@ class Framing:
         self._parts: tuple[bytes, ...] = ()
 
     def parts(self, frame: Frame) -> tuple[bytes, ...]:
-        """Return the bytes that leave: one part, or a head and the parts of a large payload."""
+        """Return the bytes to send: one part, or a header and the parts of a large payload."""
         if frame is not self._frame:
             self._parts = framed(frame)
             self._frame = frame
@@ -67,24 +68,24 @@ def head(first: int, size: int) -> bytes:
 
 
 class Outgoing:
-    """The way out of a WebSocket, which a large frame leaves in slices as its client reads.
+    """The sending side of a WebSocket; a large frame is sent in slices as its client reads.
 
-    A transport copies what its socket does not take at once. What the protocol says meanwhile, such
-    as the answer to a ping, leaves after the frame.
+    A transport copies what its socket does not take at once. Anything that the protocol sends
+    meanwhile, such as the answer to a ping, follows the frame.
 
     Args:
         transport: The transport of the connection.
-        writable: Set while the client has read enough of what was sent, and no frame is leaving.
+        writable: Set while the client has read enough of what was sent, and no frame is being sent.
 
     Attributes:
-        on_abort: Called when the connection is closed as too many answers to pings wait.
+        on_abort: Called when the connection is closed because too many answers to pings wait.
     """
 
     def __init__(self, transport: asyncio.Transport, writable: asyncio.Event) -> None:
         self._transport = transport
         self._writable = writable
         self._is_paused = False
-        self._rest: deque[bytes | memoryview] = deque()  # of the frame that is leaving
+        self._rest: deque[bytes | memoryview] = deque()  # of the frame that is being sent
         self._after: list[bytes] = []
         self._after_bytes = 0
         self._turn: asyncio.Handle | None = None
@@ -99,12 +100,12 @@ class Outgoing:
             self._go_on()
 
     def pause(self) -> None:
-        """Send no more until `resume`: the client has not read enough of what was sent."""
+        """Pause sending until `resume`: the client has not read enough of what was sent."""
         self._is_paused = True
         self._writable.clear()
 
     def resume(self) -> None:
-        """Go on with the frame that is leaving."""
+        """Continue with the frame that is being sent."""
         self._is_paused = False
         if not self._rest:
             self._writable.set()
@@ -146,7 +147,7 @@ class Outgoing:
             self._turn = None
 
     def write(self, data: bytes) -> None:
-        """Send a control frame, after the frame that is leaving."""
+        """Write a control frame, after the frame that is being sent."""
         waiting = self._after_bytes + self._transport.get_write_buffer_size()
         if waiting > MOST_CONTROL_BYTES:
             self.on_abort()
@@ -158,7 +159,7 @@ class Outgoing:
             self._after_bytes += len(data)
 
     def close(self) -> None:
-        """Close the connection when all has left."""
+        """Close the connection when everything was sent."""
         self._forget_turn()
         if self._rest and not self._transport.is_closing():
             self._transport.write(b"".join(self._rest))

@@ -1,4 +1,4 @@
-"""Hands the received bytes of a connection to its parser in parts."""
+"""Passes the received bytes of a connection to its parser in parts."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ TURN_SEC: Final = 0.002
 
 
 class Portions:
-    """Hands on what a connection has received, in parts, with turns of the event loop between.
+    """Passes on what a connection has received, in parts, yielding to the event loop between them.
 
-    One read brings up to 256 kB. A parser that gets them at once takes a second if they are tiny
-    frames or chunks, for which the robot's event loop would stand still.
+    One read returns up to 256 kB. Given all of it at once, a parser takes a second if it consists
+    of tiny frames or chunks, and would block the robot's event loop.
 
     Args:
-        transport: Is not read while something waits.
+        transport: Its reading is paused while something waits.
         take: Processes a part.
-        is_ready: Returns whether `take` can be called now; by default it always can. If it could
-            not, `go_on` has to be called as soon as it can.
+        is_ready: Returns whether `take` can be called now; by default it always can. After it
+            returned False, `go_on` has to be called as soon as it can.
 
     Attributes:
-        owed_sec: For how long nothing more is handed on, in seconds, as `take` has set it.
+        owed_sec: For how long nothing more is passed on, in seconds; set by `take`.
     """
 
     def __init__(
@@ -61,12 +61,12 @@ class Portions:
                 self._hand_on()
 
     def go_on(self) -> None:
-        """Hand on what waits, from the next turn of the event loop on."""
+        """Pass on what waits, from the next loop iteration on."""
         if self._turn is None and not self._is_closed:
             self._turn = self._loop.call_soon(self._next_turn)
 
     def close(self) -> bytes:
-        """Hand nothing on any more, and return what waits."""
+        """Stop passing anything on, and return what waits."""
         self._is_closed = True
         waiting = bytes(self._waiting)
         self._waiting.clear()
@@ -81,7 +81,7 @@ class Portions:
     def _hand_on(self) -> None:
         until_s = self._loop.time() + TURN_SEC
         while self._waiting and self._is_ready():
-            if self._transport.is_closing():  # nobody reads what a parser would say of the rest
+            if self._transport.is_closing():  # nobody reads what a parser would return for the rest
                 self._waiting.clear()
                 return
             part = bytes(self._waiting[:PART])
@@ -98,7 +98,7 @@ class Portions:
             self._transport.resume_reading()
 
     def _wait_if_owed(self) -> bool:
-        """Hand nothing more on for the time that is owed, and return whether there is one."""
+        """Pass nothing more on for the time that is owed, and return whether any is."""
         if not self.owed_sec or self._is_closed:
             return False
         self._transport.pause_reading()

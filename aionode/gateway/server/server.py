@@ -1,4 +1,4 @@
-"""The web server of the gateway: in the running loop, as a guest of the process."""
+"""The web server of the gateway: runs in the running loop, and leaves the process alone."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ CLOSING_SEC: Final = 1.0
 class Server:
     """Serves an application of ASGI on a socket, within the limits of a policy.
 
-    h11 and websockets parse what clients send; what they take, and for how long, is decided here.
+    h11 and websockets parse what clients send; this class limits how much they accept, and for how
+    long.
 
     Args:
         app: The application.
@@ -44,7 +45,7 @@ class Server:
         tls = policy().tls
         self._tls: dict[str, Any] = {}
         if tls is not None:
-            # asyncio would give a client a minute for the handshake, before it counts as one.
+            # asyncio's default would give a client a minute for the handshake, without counting it.
             self._tls = {
                 "ssl": tls_context(tls),
                 "ssl_handshake_timeout": policy().limits.handshake_sec,
@@ -54,7 +55,7 @@ class Server:
         self._has_to_end = asyncio.Event()
 
     async def serve(self, listener: socket.socket) -> None:
-        """Serve clients until `stop` is called, and disconnect them."""
+        """Serve clients until `stop` is called, then disconnect them."""
         loop = asyncio.get_running_loop()
         async with asyncio.TaskGroup() as tasks:
             shared = Shared(self._app, self._policy, tasks)
@@ -74,7 +75,7 @@ class Server:
 
 
 async def end_connections(shared: Shared) -> None:
-    """Disconnect the clients; after `CLOSING_SEC`, cancel the requests that still run."""
+    """Disconnect the clients; after `CLOSING_SEC`, cancel the requests still running."""
     for connection in list(shared.connections):
         connection.end()
     try:

@@ -1,4 +1,4 @@
-"""A WebSocket over a connection, by websockets' protocol without input and output of its own."""
+"""A WebSocket over a connection, by websockets' protocol, which does no I/O of its own."""
 
 from __future__ import annotations
 
@@ -42,22 +42,22 @@ PING_SEC: Final = 20.0
 """Interval between pings, within which a client has to answer, in seconds."""
 
 ANSWERED: Final = "aionode.answered"
-"""The type of a message of ASGI for the answer to a ping, which the application does not see."""
+"""The type of an ASGI message for the answer to a ping, which the application does not see."""
 
 MOST_ASKED: Final = 16
 """Maximum number of pings that wait for their answers."""
 
 PINGS_PER_SEC: Final = 200.0
-"""Pings and pongs that the gateway reads of a client in a second: it has to answer each ping."""
+"""Pings and pongs per second that the gateway reads from a client: it has to answer each ping."""
 
 MOST_PARTS: Final = 10_000
-"""Parts that a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
+"""Number of parts that a WebSocket message may have; clients send large ones in parts of 16 kB."""
 
 ENDED_SEC: Final = 0.02
 """Pause for each frame that a client sends after the end of its WebSocket, in seconds."""
 
 quiet = logging.getLogger("aionode.gateway.websockets")
-quiet.setLevel(logging.WARNING)  # below, it writes headers, in which tokens are
+quiet.setLevel(logging.WARNING)  # on lower levels it logs headers, which contain tokens
 
 
 class WebSocketConnection(Connection):
@@ -65,7 +65,7 @@ class WebSocketConnection(Connection):
 
     Args:
         shared: What it shares with the other connections.
-        http: The HTTP of its request, by which it is answered.
+        http: The HTTP connection of its request, which answers that request.
 
     Attributes:
         note: Counts and logs what is refused of the client; see `Session.note`.
@@ -100,8 +100,8 @@ class WebSocketConnection(Connection):
 
         Args:
             transport: The transport.
-            scope: What ASGI tells of the request.
-            rest: What has arrived behind the request.
+            scope: The ASGI scope of the request.
+            rest: The bytes that arrived after the request.
         """
         self.use(transport)
         self._portions.add(rest)
@@ -129,11 +129,12 @@ class WebSocketConnection(Connection):
         self._shared.start(self._run(scope))
 
     async def _run(self, scope: dict[str, Any]) -> None:
-        """Serve the client; it has a moment to read the goodbye."""
+        """Serve the client; afterwards it has a moment to read the close frame."""
         try:
             await self._shared.app(scope, self._receive, self._send)
         except Exception as error:  # noqa: BLE001  # of any kind, and the log says why
-            if not (isinstance(error, OSError) and self.transport.is_closing()):  # has left
+            # the client has left
+            if not (isinstance(error, OSError) and self.transport.is_closing()):
                 logger.exception("gateway: a WebSocket failed")
         finally:
             if not self._is_answered:
@@ -185,7 +186,7 @@ class WebSocketConnection(Connection):
     async def _receive(self) -> dict[str, Any]:
         """Return the next message.
 
-        The answer to a ping has its place among them: those before it were sent earlier.
+        The answer to a ping is queued in order with messages: those before it were sent earlier.
         """
         while True:
             message = await self._queue.get()
@@ -196,7 +197,7 @@ class WebSocketConnection(Connection):
             message["answered"]()
 
     async def _send(self, message: Any) -> None:
-        """Send a message of the application, when the client has read the earlier ones.
+        """Send a message of the application, once the client has read the earlier ones.
 
         Raises:
             OSError: the client has left.
@@ -232,18 +233,18 @@ class WebSocketConnection(Connection):
         return self._is_open and not (self._has_closed or self.transport.is_closing())
 
     def send_now(self, frame: Outgone) -> bool:
-        """Send a frame, if its client has read enough of the earlier ones; return whether."""
+        """Send a frame if the client has read enough of earlier ones; return whether it did."""
         if not (self.writable.is_set() and self._may_send()) or isinstance(frame, Fragmented):
             return False
         self._outgoing.send(self._shared.framing.parts(frame))
         return True
 
     def pause_writing(self) -> None:
-        """Send nothing until the client has read what was sent."""
+        """Pause sending until the client has read what was sent."""
         self._outgoing.pause()
 
     def resume_writing(self) -> None:
-        """Send again."""
+        """Resume sending."""
         self._outgoing.resume()
 
     # Frames
@@ -279,7 +280,7 @@ class WebSocketConnection(Connection):
             self._take_part(frame)
 
     def _take_part(self, frame: Frame) -> None:
-        """Take a part of a message; without any bytes in them, there could be any number."""
+        """Take a part of a message; there could be any number of parts without any bytes."""
         if frame.opcode is Opcode.CONT:
             self._count(self._conts)
         else:
@@ -303,7 +304,7 @@ class WebSocketConnection(Connection):
             try:
                 message["text"] = data.decode()
             except UnicodeDecodeError:
-                self._protocol.fail(CloseCode.INVALID_DATA, "text that is no UTF-8")
+                self._protocol.fail(CloseCode.INVALID_DATA, "text that is not UTF-8")
                 self._write_protocol()
                 return
         else:
@@ -315,16 +316,17 @@ class WebSocketConnection(Connection):
             self._portions.owed_sec += 1.0 / bucket.rate_hz
 
     def has_unread(self) -> bool:
-        """Return whether something of the client waits here: it is not silent, but has to wait."""
+        """Return whether received data waits here: if so, the client is not silent, but held up."""
         return bool(self._portions) or not self._queue.empty()
 
     # Pings
 
     def ping(self, answered: Callable[[], None] | None = None) -> None:
-        """Ask the client for a sign, and call `answered` with it: what comes then is no older.
+        """Ping the client, and call `answered` with the pong: data after it is newer than the ping.
 
-        Nobody can answer before: what a ping carries is random. A client that gets several pings
-        at once may answer the last one only, so its answer counts for the earlier ones as well.
+        A pong cannot be forged in advance, since the payload of a ping is random. A client that
+        gets several pings at once may answer only the last one, so its pong counts for the earlier
+        ones as well.
         """
         if not self._may_send():
             return
@@ -344,14 +346,14 @@ class WebSocketConnection(Connection):
             self._queue.put_nowait({"type": ANSWERED, "answered": answered})
 
     def _keep_alive(self) -> None:
-        """Ping the client; close the connection of one that has not answered since the last time.
+        """Ping the client; close the connection if it has not answered since the last time.
 
-        It reads no goodbye either.
+        Such a client would not read a close frame either.
         """
         if self._has_closed:
             return
         if self._awaits_pong:
-            self._note_end(f"it has answered no ping for {PING_SEC:g} s")
+            self._note_end(f"it has not answered a ping for {PING_SEC:g} s")
             self.abort()
             return
         self._awaits_pong = True
@@ -361,7 +363,7 @@ class WebSocketConnection(Connection):
     # The end
 
     def _close(self, code: int, reason: str) -> None:
-        """Say goodbye, and wait for that of the client, which may be behind what waits."""
+        """Send a close frame, and wait for the client's, which may be queued behind other data."""
         if self._has_closed:
             return
         self._has_closed = True
@@ -382,8 +384,8 @@ class WebSocketConnection(Connection):
             self._protocol.receive_eof()
             end = self._protocol.close_exc
             if end.sent is not None and end.sent.code == CloseCode.MESSAGE_TOO_BIG and not end.rcvd:
-                limit = f"at most {self._shared.policy().limits.frame_bytes} bytes fit"
-                text = f"{limit}, as frame_bytes says; the connection has ended"
+                limit = f"at most {self._shared.policy().limits.frame_bytes} bytes are allowed"
+                text = f"{limit} by frame_bytes; the connection has ended"
                 self.note(Refusal.TOO_LARGE, "frame", text)
             self._disconnect(*said(end))
             self._part_soon()
@@ -397,7 +399,7 @@ class WebSocketConnection(Connection):
         self.note(Refusal.DISCONNECTED, "connection", reason)
 
     def end(self) -> None:
-        """Close the WebSocket, as the server ends."""
+        """Close the WebSocket when the server ends."""
         if not self._is_answered:
             self._answer(503, [], b"the gateway ends")
         else:
@@ -422,11 +424,11 @@ def ignore(*_: object) -> None:
 
 
 def said(end: ConnectionClosed) -> tuple[int, str]:
-    """Return the code and reason of the end of a WebSocket, of whichever side has said them."""
+    """Return the code and reason of the close frame of either side."""
     close = end.rcvd or end.sent
     return (close.code, close.reason) if close else (CloseCode.ABNORMAL_CLOSURE, "")
 
 
 def encoded(headers: Iterable[tuple[str, str]]) -> list[tuple[bytes, bytes]]:
-    """Return headers as HTTP has them."""
+    """Return headers encoded for HTTP."""
     return [(name.lower().encode("latin-1"), value.encode("latin-1")) for name, value in headers]

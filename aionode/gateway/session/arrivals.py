@@ -1,4 +1,4 @@
-"""When that arrived which a client has sent, and whether it may be from before a silence."""
+"""The arrival times of a client's frames, and whether they may date from before a silence."""
 
 from __future__ import annotations
 
@@ -16,34 +16,34 @@ if TYPE_CHECKING:
 
 __all__ = ["Arrivals", "Connection"]
 
-HAS_WAITED: Final = "it may have waited while the gateway stood still; send it again"
+HAS_WAITED: Final = "it may have waited while the gateway was stalled; send it again"
 
 
 class Connection(Protocol):
     """The connection of a client, as its session uses it."""
 
     def silent_sec(self) -> float:
-        """Return how long nothing has arrived, in seconds."""
+        """Return for how long nothing has arrived, in seconds."""
 
     def has_unread(self) -> bool:
-        """Return whether something of the client waits to be read."""
+        """Return whether received data of the client waits to be read."""
 
     def ping(self, answered: Callable[[], None] | None = None) -> None:
-        """Ask the client for a sign, and call `answered` with it."""
+        """Ping the client, and call `answered` with the pong."""
 
     def abort(self) -> None:
         """Close the connection at once."""
 
 
 class Arrivals:
-    """Knows when each thing of a client arrived, and doubts what may have waited before it did.
+    """Tracks when frames of a client arrived, and doubts those that may have waited before.
 
-    A doubt begins with a ping to the client, and ends with the answer: what comes behind that was
+    A doubt begins with a ping to the client, and ends with its pong: anything received later was
     sent after the ping.
 
     Args:
         robot: Has the clock, and notices that the gateway stood still.
-        rights: Write down what is refused.
+        rights: Records what is refused.
 
     Attributes:
         connection: The connection of the client; None for a program, or a single request.
@@ -54,25 +54,25 @@ class Arrivals:
         self._rights = rights
         self._standstills = robot.standstills
         self._now_ns = robot.time_base.steady_ns
-        self._frame_ns: int | None = None  # when the frame arrived that is handled
-        self._doubts = self._trusted = 0  # how many there were, and how many are over
+        self._frame_ns: int | None = None  # when the frame in progress arrived
+        self._doubts = self._trusted = 0  # number of doubts, and of those that are over
         self._doubted_ns = -1
-        self._stood_still = 0  # which doubt the last standstill of the gateway was a reason for
+        self._stood_still = 0  # the doubt caused by the gateway's last standstill
         self._stood_still_ns = -1
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether commands may be from before a silence, as a ping is not answered yet."""
+        """Whether commands may date from before a silence, because a ping is not answered yet."""
         return self._trusted < self._doubts
 
     def doubt(self, *, stood_still: bool = False) -> None:
         """Refuse commands until the client has answered a ping, which is sent now.
 
-        It was silent for too long, or the gateway has not read what it has sent. What was on its
-        way meanwhile was sent before that answer.
+        The client was silent for too long, or the gateway did not read its data in time. Anything
+        in transit meanwhile was sent before the pong.
 
         Args:
-            stood_still: Whether the gateway stood still for long. Then calls, goals and parameters
+            stood_still: Whether the gateway was stalled for long. Then calls, goals and parameters
                 are refused as well: nobody expects them any more.
         """
         if self.connection is not None:
@@ -83,7 +83,7 @@ class Arrivals:
             self.ask_for_sign()
 
     def ask_for_sign(self) -> None:
-        """Send a ping; if the session is doubtful, its answer ends the doubt."""
+        """Send a ping; if the session is doubtful, its pong ends the doubt."""
         if self.connection is not None:
             answered = partial(self._trust, self._doubts) if self.is_doubtful else None
             self.connection.ping(answered)
@@ -93,7 +93,7 @@ class Arrivals:
         if self.connection is not None:
             self._standstills.look()
             self.note_arrival(self.connection.silent_sec())
-            # What waits in a lane is handled when the doubt is over, perhaps.
+            # Work waiting in a lane may be handled only after the doubt is over.
             if self.is_doubtful:
                 self._doubted_ns = max(self._doubted_ns, self.arrival_ns())
             if self._trusted < self._stood_still:
@@ -104,30 +104,30 @@ class Arrivals:
         self._frame_ns = self._now_ns() - round(age_sec * S_TO_NS)
 
     def arrival_ns(self) -> int:
-        """Return when that arrived which is handled, in nanoseconds of the steady clock."""
+        """Return when the current frame arrived, in nanoseconds of the steady clock."""
         return self._now_ns() if self._frame_ns is None else self._frame_ns
 
     def fresh_ns(self) -> int:
-        """Return when that has arrived which the gateway makes itself, now: it has not waited."""
+        """Return the arrival time for something that the gateway makes now: it has not waited."""
         return max(self._now_ns(), self._standstills.until_ns + 1)
 
     def _trust(self, doubt: int) -> None:
-        """End a doubt and those before it; the ping for a later one is not answered yet."""
+        """End a doubt and those before it; the ping of a later one is not answered yet."""
         self._trusted = max(self._trusted, doubt)
 
     def check_waited(self, verb: Verb, name: str, arrived_ns: int) -> None:
-        """Refuse a call, a goal or a parameter that may have waited while the gateway stood still.
+        """Refuse a call, a goal or a parameter that may have waited while the gateway was stalled.
 
         Args:
             verb: What the client does.
-            name: With what.
+            name: The name that it uses.
             arrived_ns: When its frame or request arrived, in nanoseconds of the steady clock.
 
         Raises:
-            RefusedError: it may have waited; its code is ``too_old``.
+            RefusedError: it may have waited; the code is ``too_old``.
         """
         standstills = self._standstills
-        standstills.look()  # this may be the first that happens after one
+        standstills.look()  # this may be the first thing to run after a standstill
         if self.connection is None:
             has_waited = arrived_ns <= standstills.long_until_ns
         else:
@@ -136,17 +136,17 @@ class Arrivals:
             raise self._rights.refusal(verb, name, HAS_WAITED, "too_old")
 
     def check_command(self, what: str, arrived_ns: int) -> None:
-        """Refuse a command that may be from before a silence of the client.
+        """Refuse a command that may date from before a silence of the client.
 
         Args:
             what: The subject of the refusal.
             arrived_ns: When it arrived, in nanoseconds of the steady clock.
 
         Raises:
-            RefusedError: it may be; its code is ``too_old``.
+            RefusedError: it may; the code is ``too_old``.
         """
         if self.connection is None and arrived_ns <= self._standstills.until_ns:
             raise RefusedError(what, HAS_WAITED, "too_old")
         if self.is_doubtful or arrived_ns <= self._doubted_ns:
-            reason = "it may be from before a silence of the client, which has to answer a ping"
+            reason = "it may date from before a silence of the client, which has to answer a ping"
             raise RefusedError(what, reason, "too_old")

@@ -26,19 +26,19 @@ if TYPE_CHECKING:
 __all__ = ["Audit"]
 
 MOST_WAITING: Final = 1000
-"""Lines that may wait for the disk; further ones are counted, and not written."""
+"""Number of lines that may wait for the disk; further ones are only counted."""
 
 MOST_TEXT: Final = 500
-"""The longest text of the arguments of one line, in characters."""
+"""The longest text of the arguments in a line, in characters."""
 
 REFUSALS_PER_SEC: Final = 20
-"""Refusals of one client that are written in a second: to ask in vain must not fill the disk."""
+"""Refusals of one client per second that are written: futile requests must not fill the disk."""
 
 MOST_REFUSALS: Final = 200
-"""Refusals of all clients that are written in a second."""
+"""Refusals of all clients per second that are written."""
 
 MOST_LEVELS: Final = 20
-"""How deeply nested arguments are written."""
+"""How many levels of nested arguments are written."""
 
 
 class Audit:
@@ -50,7 +50,7 @@ class Audit:
 
     Attributes:
         topic: The full name of its topic.
-        lost: How many lines were not written, because the disk was slow or there were too many.
+        lost: Number of lines not written, because the disk was slow or there were too many.
     """
 
     def __init__(self, node: Node, path: str = "") -> None:
@@ -67,7 +67,7 @@ class Audit:
         self._refused = 0
 
     def use_file(self, path: str) -> None:
-        """Append to another file from now on, with the lines that wait; empty for none."""
+        """From now on append to another file, including the lines that wait; empty for none."""
         self._path = Path(path) if path else None
 
     def note(
@@ -110,7 +110,7 @@ class Audit:
         self._put(printable(msgspec.json.encode(line | more).decode()))
 
     def _is_one_too_many(self, identity: Identity) -> bool:
-        """Count a refusal; each client has a number of its own, so that none hides another's."""
+        """Count a refusal, and return whether it is too many for its client, or for all clients."""
         second = self._time_base.steady_ns() // S_TO_NS
         if second != self._second:
             self._second, self._refused = second, 0
@@ -131,7 +131,7 @@ class Audit:
         self._filled.set()
 
     async def run(self) -> None:
-        """Append lines to the file, in a thread, until it is cancelled; the rest then as well."""
+        """Append lines to the file, in a thread, until cancelled; then write the rest."""
         try:
             while True:
                 await self._filled.wait()
@@ -153,7 +153,7 @@ class Audit:
             )
 
     def close(self) -> None:
-        """Publish no more."""
+        """Stop publishing."""
         with suppress(RuntimeError):
             self._publisher.destroy()
 
@@ -169,10 +169,10 @@ def append(path: Path, text: str) -> None:
 
 
 def printable(line: str) -> str:
-    """Return a line of JSON whose characters are printable: the others are escaped.
+    """Return a line of JSON with all unprintable characters escaped.
 
-    JSON itself leaves characters as they are that move the cursor of a terminal, or turn the order
-    of the others around.
+    JSON itself allows characters that move the cursor of a terminal, or reverse the order of
+    others.
     """
     if line.isprintable():
         return line
@@ -180,7 +180,7 @@ def printable(line: str) -> str:
 
 
 def shortened(arguments: Any) -> str:
-    """Return the beginning of a client's arguments; the rest of them costs nothing."""
+    """Return the beginning of a client's arguments; the rest costs nothing."""
     text = ""
     for part in parts_of(arguments):
         text += part
@@ -190,7 +190,7 @@ def shortened(arguments: Any) -> str:
 
 
 def parts_of(value: Any, level: int = 0) -> Iterator[str]:
-    """Yield the text of a value, piece by piece: the rest of it is not made unless wanted."""
+    """Yield the text of a value piece by piece; pieces that nobody wants are not made."""
     if level > MOST_LEVELS:
         yield "..."
     elif isinstance(value, Message):
@@ -213,7 +213,7 @@ def parts_of(value: Any, level: int = 0) -> Iterator[str]:
 def joined(
     opening: str, items: Iterable[tuple[str, Any]], closing: str, level: int
 ) -> Iterator[str]:
-    """Yield the text of several values, each behind a label."""
+    """Yield the text of several values, each after a label."""
     yield opening
     for number, (label, item) in enumerate(items):
         yield f", {label}" if number else label

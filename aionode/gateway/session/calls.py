@@ -1,4 +1,4 @@
-"""Classifies calls: a call may be part of a goal, or be about parameters."""
+"""Classifies calls: a call may be part of a goal, or concern parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PARAMETERS: Final = "rcl_interfaces/srv/"
 def decide_call(
     rights: Rights, robot: Robot, service: str, type_name: str, request: Any = None
 ) -> tuple[Verb, str]:
-    """Return the verb and the name that a call counts as: it may be part of a goal.
+    """Return the verb and the name that the policy checks for a call, which may be part of a goal.
 
     Raises:
         RefusedError: the policy does not allow it.
@@ -37,7 +37,7 @@ def decide_call(
             action = service.removesuffix(part)
             if part == ACTION_PARTS[0]:
                 raise rights.refusal(
-                    "call", service, "send goals as goals, which end with the client",
+                    "call", service, "send goals as goals, so that they end with the client",
                     "not_allowed",
                 )  # fmt: skip
             rights.decide("goal", action, "")
@@ -54,14 +54,14 @@ def decide_call(
 
 
 def nodes_of(robot: Robot, service: str) -> list[str]:
-    """Return the nodes whose parameters a service concerns, by its name and by its servers."""
+    """Return the nodes whose parameters a service concerns, by its name and its servers."""
     servers = robot.node.graph.endpoints(EndpointKind.SERVER, name=service)
     named = service.rpartition("/")[0]
     return sorted({named, *(server.node.fully_qualified_name for server in servers)})
 
 
 def seen_response(rights: Rights, robot: Robot, service: str, response: Any) -> Any:
-    """Return a response, of a list of parameters without those that the client may not see."""
+    """Return a response; parameters that the client may not see are removed from lists."""
     if response.__ros_type__ != f"{PARAMETERS}{LISTER}_Response":
         return response
     nodes, result = nodes_of(robot, service), response.result
@@ -77,7 +77,7 @@ def seen_response(rights: Rights, robot: Robot, service: str, response: Any) -> 
 
 
 def decide_in_a_call(rights: Rights, node: str, message: Any) -> None:
-    """Refuse a parameter in a call if the rule for it does more than to allow it."""
+    """Refuse to set a parameter by a call if its rule does more than allow it."""
     try:
         given = Parameter.from_parameter_msg(message)
     except (RuntimeError, ValueError) as error:

@@ -21,11 +21,11 @@ __all__ = ["Commands", "Holder", "Owner", "check_age"]
 
 
 class Owner(Protocol):
-    """The owner of commands: a session, or something that several requests of one client share."""
+    """The owner of commands: a session, or an object shared by several requests of one client."""
 
     @property
     def way(self) -> str:
-        """How it is connected, as others are told who ask for what it commands."""
+        """How it is connected, for refusals of others that try to command the same topic."""
 
     def doubt(self) -> None:
         """Handle a client that was silent for the time to live."""
@@ -55,9 +55,9 @@ class Holder:
 class Commands:
     """The holders of all command topics of a gateway.
 
-    A lease is opened with the first command of a client, and ends when the client is silent for the
-    time to live, leaves, or loses the topic to a client of higher priority. Its stop is sent then.
-    Nothing is ever published that no client has sent, but the stop.
+    A lease begins with a client's first command. It ends when the client is silent for the time to
+    live, leaves, or loses the topic to a client of higher priority; then its stop is sent. Apart
+    from the stop, nothing is ever published that no client has sent.
 
     Args:
         tasks: Run the blocks of the leases.
@@ -68,18 +68,18 @@ class Commands:
         self._holders: dict[str, Holder] = {}
 
     def holder(self, topic: str) -> Holder | None:
-        """Return who commands a topic now."""
+        """Return the client that commands a topic now."""
         return self._holders.get(topic)
 
     def holders(self) -> dict[str, Holder]:
-        """Return who commands which topic now."""
+        """Return the holder of each commanded topic."""
         return dict(self._holders)
 
     def refuse_if_held(self, topic: str, owner: object) -> None:
         """Refuse to publish on a topic that another client commands.
 
         Raises:
-            RefusedError: another one does; its code is ``held``.
+            RefusedError: another client commands it; the code is ``held``.
         """
         holder = self._holders.get(topic)
         if holder is not None and holder.owner != owner:
@@ -106,7 +106,8 @@ class Commands:
         if holder is not None and (holder.owner != owner or holder.rule != rule):
             if holder.owner != owner and rule.priority <= holder.rule.priority:
                 raise held(topic, holder)
-            await self._end(holder)  # of a client of less priority, or of a policy that has changed
+            # of a client of lower priority, or of a policy that has changed
+            await self._end(holder)
             self.refuse_if_held(topic, owner)
             holder = self._holders.get(topic)
         if holder is None:
@@ -121,8 +122,8 @@ class Commands:
         except LeaseExpiredError as error:
             raise RefusedError(
                 f"publish {topic}",
-                f"nothing came for {holder.rule.ttl_sec:g} s, and the stop was sent; send further "
-                "commands more often",
+                f"no command arrived for {holder.rule.ttl_sec:g} s, so the stop was sent; "
+                "send commands more often",
                 "too_old",
             ) from error
 
@@ -141,7 +142,7 @@ class Commands:
         except AionodeError as error:
             if not holder.entered.done():
                 holder.entered.set_exception(error)
-                holder.entered.exception()  # retrieved, as the client may be gone
+                holder.entered.exception()  # retrieved, since the client may be gone
         finally:
             if self._holders.get(topic) is holder:
                 del self._holders[topic]
@@ -155,7 +156,7 @@ class Commands:
         await holder.ended.wait()
 
     async def leave(self, owner: object, topic: str | None = None) -> None:
-        """End the leases of a client: all, or that of one topic."""
+        """End the leases of a client: all of them, or that of one topic."""
         for name, holder in list(self._holders.items()):
             if holder.owner == owner and topic in {None, name}:
                 await self._end(holder)
@@ -167,26 +168,26 @@ class Commands:
 
 
 def refuse_without_stop(topic: str, msg_type: type[Message], rule: LeaseRule) -> None:
-    """Refuse a lease whose stop would be the type's default message, where that may move the robot.
+    """Refuse a lease whose stop would be a default message that may move the robot.
 
-    A definition may give its fields defaults of their own, such as a speed; and a pose at the
-    origin is no stop at all.
+    A definition may give its fields their own defaults, such as a speed; and a pose at the origin
+    is no stop at all.
 
     Raises:
-        RefusedError: The default message is not all zeros, and the rule gives no stop.
+        RefusedError: the default message is not all zeros, and the rule gives no stop.
     """
     if rule.stop or (moving := moving_field(to_builtins(msg_type()))) is None:
         return
     raise RefusedError(
         f"publish {topic}",
-        f"the policy does not say how it stops, and the default message of {type_name(msg_type)} "
-        f"has {moving}; give the rule's lease a stop",
+        "the policy does not define its stop, and the default message of "
+        f"{type_name(msg_type)} has {moving}; give the rule's lease a stop",
         "not_allowed",
     )
 
 
 def moving_field(value: Any, path: str = "") -> str | None:
-    """Return the first number in a message that is not zero, with its path; None without one."""
+    """Return the first number in a message that is not zero, with its path, or None."""
     if isinstance(value, dict):
         parts = ((f"{path}.{name}".lstrip("."), part) for name, part in value.items())
     elif isinstance(value, list):
@@ -200,37 +201,37 @@ def held(topic: str, holder: Holder) -> RefusedError:
     """Return the error for a topic that another client commands."""
     who, where = holder.identity.name, holder.identity.address
     source = f"by {holder.owner.way}" + (f" from {where}" if where else "")
-    return RefusedError(f"publish {topic}", f"{who} commands it now, {source}; ask again later",
+    return RefusedError(f"publish {topic}", f"{who} commands it now, {source}; try again later",
                         "held")  # fmt: skip
 
 
 def check_age(
     topic: str, message: Any, rule: LeaseRule, *, now_ns: int, arrived_ns: int, time_base: TimeBase
 ) -> None:
-    """Refuse a command that was on its way for too long.
+    """Refuse a command that was in transit for too long.
 
     Args:
         topic: The topic.
-        message: The command; its ``header.stamp`` counts if it has one that is not zero.
+        message: The command; its ``header.stamp`` counts if it is not zero.
         rule: How commands are published.
         now_ns: The time of the node's clock, in nanoseconds.
         arrived_ns: When the frame arrived, in nanoseconds of the steady clock.
         time_base: Shows the steady clock.
 
     Raises:
-        RefusedError: the command is older than the rule allows; its code is ``too_old``.
+        RefusedError: the command is older than the rule allows; the code is ``too_old``.
     """
     ages = [(time_base.steady_ns() - arrived_ns) / S_TO_NS]
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     if isinstance(message, Message) and stamp is not None:
         with suppress(AttributeError):
             stamp_ns = stamp.sec * S_TO_NS + stamp.nanosec
-            if stamp_ns:  # a stamp of the future says as little
+            if stamp_ns:  # a stamp in the future is just as meaningless
                 ages.append(abs(now_ns - stamp_ns) / S_TO_NS)
     if max(ages) > rule.max_age_sec:
         raise RefusedError(
             f"publish {topic}",
-            f"it is {max(ages):.3f} s old, and may be {rule.max_age_sec:g} s; set the clock of the "
-            "client if its stamps differ",
+            f"it is {max(ages):.3f} s old, at most {rule.max_age_sec:g} s are allowed; "
+            "check the clock of the client",
             "too_old",
         )

@@ -30,7 +30,7 @@ DEPTH: Final = 100
 """The depth of subscriptions: the loop may be busy for some milliseconds."""
 
 UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""The QoS while there is no publisher, which is compatible with whatever the first one offers."""
+"""The QoS while there is no publisher, compatible with anything that the first one may offer."""
 
 MOST_LATCHED: Final = 100
 """Number of messages of each transient local publisher to keep for late clients."""
@@ -40,7 +40,7 @@ MOST_LATCHED_BYTES: Final = 32 << 20
 
 
 class Received:
-    """One message of a topic, shared by all clients: decoded once, encoded once for each kind.
+    """A message of a topic, shared by all clients: decoded once, and encoded once for each format.
 
     Attributes:
         topic: The full name of its topic.
@@ -77,18 +77,18 @@ class Received:
         """The message, decoded on first use.
 
         Raises:
-            DecodeError: the bytes are no message of that type.
+            DecodeError: the bytes are not a message of that type.
         """
         if self._message is None:
             self._message = cdr.decode(self.message_class, self.raw)
         return self._message
 
     def has(self, key: Hashable) -> bool:
-        """Return whether `once` has made something for a key."""
+        """Return whether `once` has a result for a key."""
         return key in self._kinds
 
     def once(self, key: Hashable, make: Callable[[Received], T]) -> T:
-        """Return the result of `make`, which is called once per key, whoever asks.
+        """Return the result of `make`, which is called only once per key.
 
         Args:
             key: The kind of encoding.
@@ -105,7 +105,7 @@ Taker = Callable[[Received], None]
 
 
 class Feed:
-    """The subscription to one topic, for all clients that want the same of it."""
+    """The subscription to one topic, for all clients with the same requirements."""
 
     def __init__(
         self, node: Node, topic: str, message_class: Any, profile: QoSProfile | None
@@ -125,10 +125,10 @@ class Feed:
         self._subscribe()
 
     def add(self, taker: Taker) -> Callable[[], bool]:
-        """Call `taker` with each message, starting with those that late subscriptions get.
+        """Call `taker` with each message, starting with those kept for late subscriptions.
 
         Returns:
-            A function that ends this, and returns whether the feed has no taker any more.
+            A function that ends this, and returns whether the feed has no takers left.
         """
         key = object()
         self._takers[key] = taker
@@ -144,7 +144,7 @@ class Feed:
 
     @property
     def dropped(self) -> int:
-        """The number of messages dropped by the subscription, or lost on their way."""
+        """The number of messages dropped by the subscription, or lost in transit."""
         if self._subscription is None:
             return 0
         return self._subscription.stats.dropped + self._subscription.stats.lost
@@ -168,7 +168,7 @@ class Feed:
             self._subscribe()
 
     def _profile(self) -> QoSProfile:
-        """Return the strongest profile that all publishers fit; one that any fits without them."""
+        """Return the strongest profile that matches all publishers; without any, the weakest."""
         if self._wanted is not None:
             return self._wanted
         if not self._offered:
@@ -179,7 +179,7 @@ class Feed:
     def _subscribe(self) -> None:
         if self._subscription is not None:
             self._subscription.destroy()
-        # Another QoS of a publisher that appears is no mistake: the feed subscribes anew for it.
+        # A new publisher's different QoS is no mistake: the feed subscribes again for it.
         ignore = None if self._wanted is not None else ignore_incompatible_qos
         self._subscription = self._node.create_subscription(
             self.message_class,
@@ -214,7 +214,7 @@ class Feed:
 
 
 def ignore_incompatible_qos(info: object) -> None:
-    """Keep the warning about it out of the log."""
+    """Keep the warning about incompatible QoS out of the log."""
 
 
 class Feeds:
@@ -231,7 +231,7 @@ class Feeds:
     def add(
         self, topic: str, message_class: Any, profile: QoSProfile | None, taker: Taker
     ) -> Callable[[], None]:
-        """Call `taker` with each message of a topic; returns a function that ends this."""
+        """Call `taker` with each message of a topic; return a function that ends this."""
         key = (topic, message_class, None if profile is None else str(profile))
         feed = self._feeds.get(key)
         if feed is None:

@@ -1,4 +1,4 @@
-"""Tracks whose goals the gateway has sent, to report goals that continue without their owner."""
+"""Tracks the owners of the goals that the gateway has sent, to report goals that outlive them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["GoalOwners"]
 
 MOST_GOALS: Final = 10_000
-"""Number of goals whose owners are remembered, newest first."""
+"""Number of goals whose owners are remembered; the newest ones."""
 
 WARN_SEC: Final = 1.0
 """The time between two warnings, in seconds; the audit log has a line for each goal."""
@@ -24,17 +24,17 @@ GOES_ON: Final = "cancel was rejected: the goal goes on"
 
 
 class Owned(NamedTuple):
-    """The client for whom a goal was sent, and its way in."""
+    """The client for whom a goal was sent, and its protocol."""
 
     identity: Identity
     way: str
 
 
 class GoalOwners:
-    """Makes the clients of actions, whose goals are those of the clients of the gateway.
+    """Creates the action clients that send goals on behalf of the gateway's clients.
 
-    A goal is cancelled when its owner leaves or is lost. A server of ROS without a cancel callback
-    rejects that, and the goal goes on; the log and the audit log say so then.
+    A goal is cancelled when its owner leaves or is lost. A ROS server without a cancel callback
+    rejects that, and the goal continues; this is then reported in the log and the audit log.
 
     Args:
         node: The node of the gateway.
@@ -54,7 +54,7 @@ class GoalOwners:
         return client
 
     def new_goal(self, identity: Identity, way: str) -> Any:
-        """Return the id of a goal that a client is about to send."""
+        """Return the id for a goal that a client is about to send."""
         from aionode.interfaces.unique_identifier_msgs.msg import UUID  # few clients send goals
 
         goal_id = self._node.context.new_uuid()
@@ -65,8 +65,8 @@ class GoalOwners:
         owned = self._owned.pop(goal_id, None)
         who = "its client" if owned is None else owned.identity.name
         self._node.get_logger().warning(
-            f"gateway: {action}: {who} has left, and {GOES_ON} ({goal_id}); give its server a "
-            "cancel callback that accepts",
+            f"gateway: {action}: {who} has left, and {GOES_ON} ({goal_id}); give its server "
+            "a cancel callback that accepts",
             throttle_duration_sec=WARN_SEC,
         )
         if owned is not None:

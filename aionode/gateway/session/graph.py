@@ -1,4 +1,4 @@
-"""The graph as a client sees it."""
+"""The graph as seen by a client."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["GraphView", "Kind", "NodeDetails"]
 
 MOST_QUESTIONS: Final = 256
-"""Questions about the graph that may wait, for each client."""
+"""Number of graph queries that may wait, for each client."""
 
 Kind: TypeAlias = Literal["topic", "service", "action"]
 """A kind of name."""
@@ -59,20 +59,20 @@ class GraphView:
         self._turn = asyncio.Lock()
 
     async def turn(self) -> None:
-        """Wait for a turn of the loop in which no client of the gateway asks anything else.
+        """Wait for a loop iteration in which no other client of the gateway queries the graph.
 
-        Questions about the graph walk through it, for which they hold up the loop: those of a burst
-        come one by one, the clients in turn, and the callbacks of the robot between them.
+        A query walks through the graph and blocks the loop meanwhile, so the queries of a burst run
+        one by one, the clients taking turns, with callbacks of the robot between them.
 
         Raises:
-            RefusedError: too many questions of the client wait.
+            RefusedError: too many queries of the client are waiting.
         """
         with self._rights.one_more("ask", "the graph", "questions", (), MOST_QUESTIONS):
             async with self._turn, self._robot.turn:
                 await checkpoint()
 
     def offered(self, *, user_only: bool = True) -> Offered:
-        """Return what there is that the client may see, as `aionode.graph.Graph.offered` does."""
+        """Return what the client may see of `aionode.graph.Graph.offered`."""
         found = self._robot.node.graph.offered(user_only=user_only)
         named = (
             self._rights.visible(of.items(), hidden=True)
@@ -128,7 +128,7 @@ class GraphView:
         )
 
     def users(self, kind: EndpointKind, name: str) -> list[str]:
-        """Return the nodes that have an endpoint of a kind and a full name, sorted."""
+        """Return the nodes that have an endpoint of a kind and full name, sorted."""
         endpoints = self._robot.node.graph.endpoints(kind, name=name)
         if not endpoints or not self._rights.sees(
             name, [endpoint.type_name for endpoint in endpoints]
@@ -138,7 +138,7 @@ class GraphView:
         return [node for node in sorted(nodes) if self._rights.sees(node, [])]
 
     def connections(self, kind: EndpointKind) -> dict[str, list[str]]:
-        """Return the nodes that have endpoints of a kind, sorted, by the names of those."""
+        """Return the nodes that have endpoints of a kind, sorted, by the names of the endpoints."""
         graph = self._robot.node.graph
         nodes_of: dict[str, set[str]] = defaultdict(set)
         names, nodes = (
@@ -154,14 +154,14 @@ class GraphView:
     # Types
 
     def type_of(self, name: str, kind: Kind) -> str:
-        """Return the type that the graph shows of a full name.
+        """Return the type of a full name in the graph.
 
         Raises:
             InterfaceNotFoundError: no node has it.
         """
         for type_name in self._types_of(name, kind):
             return type_name
-        raise InterfaceNotFoundError(name, problem=f"no node has this {kind}; give its type")
+        raise InterfaceNotFoundError(name, problem=f"no node has this {kind}; specify its type")
 
     def types_of(self, name: str, kind: Kind) -> list[str]:
         """Return the types of a full name; none if no node has it, or the client may not see it."""
@@ -169,7 +169,7 @@ class GraphView:
         return types if types and self._rights.sees(name, types) else []
 
     def sees(self, name: str, type_name: str) -> bool:
-        """Return whether the client sees a name; without a type, those of the topic count."""
+        """Return whether the client sees a name; without a type, its types in the graph count."""
         types = [type_name] if type_name else list(self._types_of(name, "topic"))
         return self._rights.sees(name, types)
 

@@ -1,4 +1,4 @@
-"""The work of one client: each lane in order, and the lanes side by side."""
+"""The work of one client: each lane in order, and the lanes concurrently."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from aionode.errors import MessageError
 __all__ = ["Lanes", "weight_of"]
 
 MOST_WAITING: Final = 100
-"""Ops of one lane that may wait."""
+"""Number of ops in one lane that may wait."""
 
 MOST_WEIGHT: Final = 8 << 20
-"""Bytes that the waiting and running ops of a client may take; one alone may take more."""
+"""Bytes that the waiting and running ops of a client may take; a single one may take more."""
 
 PART_BYTES: Final = 64
-"""Bytes that an object or list of JSON takes besides those of its text, at least."""
+"""Bytes that a JSON object or list takes besides its text, at least."""
 
 PATIENCE_SEC: Final = 1.0
-"""Time for which a frame waits for room; meanwhile its client is not read."""
+"""How long a frame waits for room; meanwhile its client is not read."""
 
 MOST_TASKS: Final = 1000
-"""Calls, goals and lanes of one client that may run; the policy limits the first two, too."""
+"""Number of calls, goals and lanes of one client that may run; the policy also limits the first
+two."""
 
 
 class Lanes:
-    """Runs the ops of one client: those of one lane in order, lanes side by side.
+    """Runs the ops of one client: those of one lane in order, the lanes concurrently.
 
     A subscription that waits for the description of its type must not hold up a command.
 
@@ -48,7 +49,7 @@ class Lanes:
         """Wait until there is room in memory for the ops of a frame, which are put or started next.
 
         Raises:
-            MessageError: there is none, as earlier ops take long.
+            MessageError: there is no room because earlier ops take long.
         """
         weight = weight_of(frame)
         try:
@@ -57,12 +58,14 @@ class Lanes:
                     self._has_room.clear()
                     await self._has_room.wait()
         except TimeoutError:
-            problem = f"its earlier ops take {self._weight} bytes; wait for them, or send smaller"
+            problem = (
+                f"its earlier ops take {self._weight} bytes; wait for them, or send smaller ones"
+            )
             raise MessageError("client", problem) from None
         self._next_weight = weight
 
     def _taken_weight(self) -> int:
-        """Count the weight of the last frame, for the first of its ops."""
+        """Assign the weight of the last frame to the first of its ops."""
         weight, self._next_weight = self._next_weight, 0
         self._weight += weight
         return weight
@@ -75,11 +78,11 @@ class Lanes:
         """Run `work` after the earlier work of the same lane.
 
         Raises:
-            MessageError: too much waits in the lane, or there are too many lanes.
+            MessageError: too much work waits in the lane, or there are too many lanes.
         """
         waiting = self._lanes.get(lane)
         if waiting is not None and len(waiting) >= MOST_WAITING:
-            await checkpoint()  # one burst, perhaps, that no task has had a turn to work off
+            await checkpoint()  # perhaps a single burst that no task has had a chance to work off
             waiting = self._lanes.get(lane)
         if waiting is None:
             if len(self._running) >= MOST_TASKS:
@@ -92,7 +95,7 @@ class Lanes:
             raise MessageError("client", f"{MOST_WAITING} ops wait for an earlier one; send fewer")
 
     def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
-        """Run `work` beside everything else; return its task.
+        """Run `work` concurrently with everything else; return its task.
 
         Raises:
             MessageError: too many tasks are running.
@@ -104,7 +107,7 @@ class Lanes:
 
     def _begin(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
         if len(self._running) >= MOST_TASKS:
-            raise MessageError("client", f"{MOST_TASKS} ops are under way; wait for their ends")
+            raise MessageError("client", f"{MOST_TASKS} ops are in progress; wait for them to end")
 
         async def run() -> None:
             await work()
@@ -129,7 +132,7 @@ class Lanes:
                 finally:
                     waiting.popleft()
                     self._release(weight)
-                del work  # so that the values of its op do not wait with the lane
+                del work  # so that the values of its op are not kept while the lane waits
                 await checkpoint()  # the work of many small ops in one burst
         finally:
             del self._lanes[lane]
@@ -137,7 +140,7 @@ class Lanes:
 
 
 def weight_of(frame: str | bytes) -> int:
-    """Return about how many bytes the values in a frame take if it is JSON."""
+    """Estimate how many bytes the values in a frame take, if it is JSON."""
     if isinstance(frame, bytes):
         parts = frame.count(b"{") + frame.count(b"[")
     else:

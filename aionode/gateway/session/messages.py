@@ -1,4 +1,4 @@
-"""Messages of what clients write."""
+"""Creates messages from what clients write."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ CDR_HEADER: Final = 4
 def as_message(
     cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes, clock: Clock
 ) -> Any:
-    """Return a message of a class: as it is, or of its values as clients write them, or bytes.
+    """Return a message of a class: unchanged, or created from a client's values or bytes.
 
     Args:
         cls: The class.
         values: The message, its values by name or in order (see `from_json`), or its CDR bytes.
-        clock: Gives the time of stamps that the client leaves to the robot.
+        clock: The clock for stamps that the client leaves to the robot.
 
     Raises:
         MessageError: a value does not fit its field.
-        DecodeError: the bytes are no such message.
+        DecodeError: the bytes are not such a message.
     """
     if isinstance(values, Message):
         return values
@@ -69,7 +69,7 @@ def empty_bytes(cls: Any) -> int:
 
 
 def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
-    """Return a message; see `as_message`. It is called in a thread.
+    """Return a message; see `as_message`. Called in a thread.
 
     Raises:
         MessageError: it takes more than `most_bytes`.
@@ -77,10 +77,14 @@ def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
     from aionode.engine.wire import cdr  # few clients send large messages
 
     least = least_bytes(cls, values)
-    if least > most_bytes:  # the empty messages alone would use up the memory
-        raise MessageError(cls.__ros_type__, f"takes {least} bytes, at most {most_bytes} fit")
+    if least > most_bytes:  # the empty messages alone would exhaust the memory
+        raise MessageError(
+            cls.__ros_type__, f"takes {least} bytes, at most {most_bytes} are allowed"
+        )
     message = as_message(cls, values, clock)
     size = len(cdr.encode(message))
     if size > most_bytes:
-        raise MessageError(cls.__ros_type__, f"takes {size} bytes, at most {most_bytes} fit")
+        raise MessageError(
+            cls.__ros_type__, f"takes {size} bytes, at most {most_bytes} are allowed"
+        )
     return message

@@ -1,4 +1,4 @@
-"""The motions of assistants that are under way, so that `stop` can end them."""
+"""The motions of assistants in progress, so that `stop` can end them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ __all__ = ["Motion", "Motions"]
 
 
 class Motion:
-    """What one call moves, until it ends.
+    """The motion that one call commands, until it ends.
 
     Attributes:
         verb: ``publish`` or ``goal``.
         name: The topic or action.
         type_name: The name of its type.
-        identity: Whose call it is.
-        stopped_by: The name of who has called `stop`; empty if nobody has.
-        was_cut: Whether it was ended by `stop`, or by its time.
-        ended: Set when it has ended, with its stop.
+        identity: The client of the call.
+        stopped_by: The name of the client that called `stop`; empty if none did.
+        was_cut: Whether it was ended by `stop`, or by its time limit.
+        ended: Set when it has ended, and its stop was sent.
     """
 
     def __init__(self, session: Session, verb: Verb, name: str, type_name: str) -> None:
@@ -43,7 +43,7 @@ class Motion:
         self._began_ns = session.steady_ns()
 
     def end(self, by: str) -> None:
-        """End it at the next turn of the loop."""
+        """End it at the next iteration of the event loop."""
         self.stopped_by = by
         self._cut.set()
 
@@ -72,16 +72,16 @@ class Motion:
             self.was_cut = True
 
     def seconds(self) -> float:
-        """Return for how long it has lasted, in seconds."""
+        """Return how long it has lasted, in seconds."""
         return (self._session.steady_ns() - self._began_ns) / S_TO_NS
 
     def outcome(self, how: str) -> str:
-        """Return how it has ended, in words."""
+        """Return how it ended, in words."""
         return f"stopped after {self.seconds():.1f} s: {how}"
 
 
 class Motions:
-    """What the assistants of one robot move now."""
+    """The motions of the assistants of one robot."""
 
     def __init__(self) -> None:
         self._motions: dict[Motion, None] = {}
@@ -92,7 +92,7 @@ class Motions:
 
     @contextmanager
     def moving(self, session: Session, verb: Verb, name: str, type_name: str) -> Iterator[Motion]:
-        """Move something within the block, so that `stop` knows of it."""
+        """Register a motion for the duration of the block, so that `stop` can end it."""
         motion = Motion(session, verb, name, type_name)
         self._motions[motion] = None
         try:

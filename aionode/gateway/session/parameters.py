@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 __all__ = ["NodeParameters"]
 
 SERVER_SEC: Final = 1.0
-"""Time for which a question waits for the parameter services of a node, in seconds."""
+"""How long a request waits for the parameter services of a node, in seconds."""
 
 ANSWER_SEC: Final = 5.0
-"""Time for which questions about parameters wait for an answer, in seconds."""
+"""How long requests about parameters wait for an answer, in seconds."""
 
 MOST_ASKED: Final = 8
-"""Nodes that are asked for their parameters at a time."""
+"""Number of nodes that are asked for their parameters at the same time."""
 
 
 class NodeParameters:
@@ -39,7 +39,7 @@ class NodeParameters:
     Args:
         robot: Has the node that asks.
         rights: What the client may do.
-        arrivals: When that arrived which is handled.
+        arrivals: The arrival times of frames.
         graph: The nodes that the client may see.
     """
 
@@ -53,8 +53,8 @@ class NodeParameters:
         """Return the full name of a node, by which the policy knows it.
 
         Raises:
-            InvalidTopicNameException: it is no full name (a ValueError).
-            RefusedError: the gateway's node would ask another node instead.
+            InvalidTopicNameException: it is not a full name (a ValueError).
+            RefusedError: a remap rule makes the gateway's node ask another node instead.
         """
         service = f"{node}/set_parameters"
         validate_full_topic_name(service)
@@ -68,7 +68,7 @@ class NodeParameters:
 
         Raises:
             RefusedError: the client may not see the node.
-            ServiceError: the node offers no parameters.
+            ServiceError: the node has no parameter services.
         """
         node = self.node_name(node)
         if not self._rights.sees(node, []):
@@ -78,7 +78,7 @@ class NodeParameters:
             with self._rights.one_call("see", node):
                 async with asyncio.timeout(ANSWER_SEC):
                     if not await client.wait_for_services(SERVER_SEC):
-                        raise ServiceError(node, "it offers no parameters")
+                        raise ServiceError(node, "it has no parameter services")
                     yield client
         finally:
             client.destroy()
@@ -88,8 +88,8 @@ class NodeParameters:
 
         Raises:
             RefusedError: it may not see the node.
-            ServiceError: the node offers no parameters.
-            TimeoutError: the node has not answered within 5 s.
+            ServiceError: the node has no parameter services.
+            TimeoutError: the node did not answer within 5 s.
         """
         async with self._client(node) as client:
             listed = await client.list_parameters()
@@ -101,7 +101,8 @@ class NodeParameters:
         room = asyncio.Semaphore(MOST_ASKED)
 
         async def ask(node: str) -> None:
-            with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
+            # a node without parameter services, or one that is ending
+            with suppress(AionodeError, TimeoutError):
                 async with room:
                     names_of[node] = await self.names(node)
 
@@ -115,14 +116,15 @@ class NodeParameters:
 
         Raises:
             RefusedError: the client may not see one of them.
-            ServiceError: the node offers no parameters.
-            TimeoutError: the node has not answered within 5 s.
+            ServiceError: the node has no parameter services.
+            TimeoutError: the node did not answer within 5 s.
         """
         node = self.node_name(node)
         self._rights.check_seen(node, names)
         async with self._client(node) as client:
             parameters = await client.get_parameters(names)
-            if len(parameters) != len(names):  # one of them is not declared: then there are none
+            # one of them is not declared: then the node returns none
+            if len(parameters) != len(names):
                 declared = set((await client.list_parameters()).names)
                 names = [name for name in names if name in declared]
                 parameters = await client.get_parameters(names)
@@ -138,9 +140,9 @@ class NodeParameters:
 
         Raises:
             RefusedError: the policy does not allow it.
-            ServiceError: the node offers no parameters.
-            TimeoutError: the node has not answered within 5 s.
-            MessageError: the value is none that parameters have (a ValueError).
+            ServiceError: the node has no parameter services.
+            TimeoutError: the node did not answer within 5 s.
+            MessageError: parameters cannot have such a value (a ValueError).
         """
         arrived_ns = self._arrivals.arrival_ns()
         check_items(value, name)
@@ -158,14 +160,14 @@ class NodeParameters:
 
         Args:
             node: The full name of the node.
-            given: The parameter; one that is not set is undeclared.
+            given: The parameter; one without a value is undeclared.
             arrived_ns: As for `publish`.
 
         Raises:
-            RefusedError: the policy does not allow it, or it may have waited while the gateway
-                stood still.
-            ServiceError: the node offers no parameters.
-            TimeoutError: the node has not answered within 5 s.
+            RefusedError: the policy does not allow it, or it may have waited while the gateway was
+                stalled.
+            ServiceError: the node has no parameter services.
+            TimeoutError: the node did not answer within 5 s.
         """
         arrived_ns = self._arrivals.arrival_ns() if arrived_ns is None else arrived_ns
         node, began_ns = self.node_name(node), self._robot.time_base.steady_ns()

@@ -27,17 +27,18 @@ MOST_PLACES: Final = 100
 """Places whose clients without a name have lines of their own; those of further ones share some."""
 
 NOBODY: Final = ("", "")
-"""The client of the lines that all share who have neither a name nor a place of their own."""
+"""The client name for log lines about all clients that have neither a name nor a place of their
+own."""
 
 MOST_SUBJECTS: Final = 1_000
-"""What is remembered of clients of all names: they may invent any subjects."""
+"""Number of subjects remembered for each client, since clients may invent any."""
 
 MOST_TEXT: Final = 500
 """The longest subject or reason in a line, in characters."""
 
 
 class Refusal(enum.Enum):
-    """Why something was refused, dropped or is late; the value is its word for programs."""
+    """Why something was refused, dropped or late; the value is the word for programs."""
 
     # The codes of RefusedError
     UNAUTHORIZED = "unauthorized"
@@ -56,19 +57,19 @@ class Refusal(enum.Enum):
     FAILED = "failed"
     """A request failed: no node knows the type, or nothing has answered."""
     IGNORED = "ignored"
-    """It has no effect."""
+    """The op has no effect."""
     UNREADABLE = "unreadable"
     """A message for the client is not valid for its type."""
     SLOW = "slow"
     """Messages for the client were dropped because it reads too slowly."""
     LATE = "late"
-    """The gateway reads the client later than it sends."""
+    """The gateway reads from the client more slowly than it sends."""
     DISCONNECTED = "disconnected"
     """The gateway has ended the client's connection."""
 
     @classmethod
     def of(cls, error: Exception) -> Refusal:
-        """Return the kind of an error."""
+        """Return the kind of refusal for an error."""
         if isinstance(error, RefusedError):
             return cls(error.code)
         return cls.INVALID if isinstance(error, MessageError) else cls.FAILED
@@ -76,9 +77,9 @@ class Refusal(enum.Enum):
 
 @dataclass(slots=True)
 class Window:
-    """How many lines there were about one client in `WAIT_NS`, and how many there would have been.
+    """The number of log lines about one client within `WAIT_NS`, written and omitted.
 
-    A client is all those of one name, or those without a name at one place.
+    A client here is everyone with one name, or everyone without a name at one place.
     """
 
     until_ns: int
@@ -86,7 +87,7 @@ class Window:
     left_out: int = 0
 
     def has_room(self) -> bool:
-        """Count one more line; return whether there may be so many."""
+        """Count one more line; return whether it may be written."""
         if self.lines >= MOST_LINES:
             self.left_out += 1
             return False
@@ -95,14 +96,14 @@ class Window:
 
 
 class Refusals:
-    """Counts what is refused, dropped or late, by its kind, and warns of it.
+    """Counts what is refused, dropped or late, by kind, and logs warnings.
 
-    The first of each client and subject is said, and then how many more there were: after 10 s,
-    20 s and so on. How many lines about a client were left out, as there were too many in
-    `WAIT_NS`, is said before the next one that begins such a time.
+    The first refusal for each client and subject is logged, and then how many more there were:
+    after 10 s, 20 s and so on. If there were too many lines about a client within `WAIT_NS`, the
+    number of omitted lines is logged before the first line of its next period.
 
     Args:
-        node: The gateway's node, whose log it is.
+        node: The gateway's node, whose log is used.
 
     Attributes:
         counts: How many there were of each kind.
@@ -120,14 +121,14 @@ class Refusals:
     def note(
         self, identity: Identity, way: str, kind: Refusal, subject: str, reason: str, count: int = 1
     ) -> None:
-        """Count something, and warn of it.
+        """Count something, and log a warning.
 
         Args:
             identity: The client; one without a name if the policy does not know it.
-            way: The way in, such as ``rosbridge``.
+            way: The protocol, such as ``rosbridge``.
             kind: Why.
-            subject: Which op, and about what. It is said again only after a while.
-            reason: What happened, and what fits.
+            subject: The op and its subject; repeated in the log only after a while.
+            reason: What happened, and what would be valid.
             count: How many there were.
         """
         self.counts[kind] += count
@@ -140,11 +141,11 @@ class Refusals:
             return
         where = f"{identity.address or 'this process'}, {way}"
         text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
-        # On one line, so that a name of a client cannot look like another line of the log.
+        # On one line, so that a client's name cannot look like another line of the log.
         self._node.get_logger().warning(f"gateway: {escaped(' '.join(text.split()))}{more}")
 
     def _window(self, client: tuple[str, str], now_ns: int) -> Window:
-        """Return the window of a client's lines; those that are over are told of and forgotten."""
+        """Return the window of a client's lines; expired windows are reported and forgotten."""
         window = self._windows.get(client)
         if window is not None and now_ns < window.until_ns:
             return window
@@ -160,6 +161,6 @@ class Refusals:
             name, place = client
             who = name or (f"unknown client ({place})" if place else "unknown clients")
             self._node.get_logger().warning(
-                f"gateway: {escaped(who)}: {count} more lines in {WAIT_NS // S_TO_NS} s were left"
-                f" out, as there are at most {MOST_LINES} about one client"
+                f"gateway: {escaped(who)}: {count} more lines in {WAIT_NS // S_TO_NS} s were "
+                f"omitted: the limit is {MOST_LINES} about one client"
             )

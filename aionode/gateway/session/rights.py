@@ -1,4 +1,4 @@
-"""What a client may do: all parts of its session check here before they touch the robot."""
+"""The rights of a client: every part of its session checks here before it touches the robot."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ __all__ = ["Rights"]
 
 
 class Rights:
-    """Asks the policy about one client, and writes down what it refuses.
+    """Asks the policy about one client, and records refusals.
 
     Args:
         robot: Has the policy, the audit log, and the counts of what is refused.
         identity: Who the client is.
-        kind: The way in, for the audit log.
+        kind: The protocol, for the audit log.
 
     Attributes:
-        identity: Who the client is; a new policy may know it by another name.
-        kind: The way in.
-        ask: Asks a person about the client; None for the way that all clients have.
+        identity: Who the client is; a new policy may give it another name.
+        kind: The protocol.
+        ask: Asks a person about the client; None to use the gateway's way.
         refused: Number of times the client was refused something.
         refused_cheaply: How many of these were commands that came too late, or on a topic in use.
     """
@@ -48,16 +48,16 @@ class Rights:
 
     @property
     def limits(self) -> Limits:
-        """The limits of the policy that holds now."""
+        """The limits in the current policy."""
         return self._robot.policy.limits
 
     @property
     def rules(self) -> list[Rule]:
-        """The rules about the client that allow something."""
+        """The allowing rules that apply to the client."""
         return [rule for rule in self._robot.policy.allow if rule.is_about(self.identity)]
 
     def note(self, kind: Refusal, subject: str, reason: str, count: int = 1) -> None:
-        """Count and log what is refused, dropped or late of the client; see `Refusals.note`."""
+        """Count and log what is refused, dropped or late for the client; see `Refusals.note`."""
         self._robot.refusals.note(self.identity, self.kind, kind, subject, reason, count)
 
     def note_failure(self, error: Exception, op: str = "") -> None:
@@ -77,7 +77,7 @@ class Rights:
     def decision(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:
         """Return the decision of the policy about the client; see `Policy.decide`.
 
-        The audit log has what all clients send, so a pattern does not show it.
+        The audit log contains what all clients send, so a pattern does not make it visible.
         """
         return self._robot.policy.decide(
             self.identity, verb, name, type_name, message, private=name == self._robot.audit.topic
@@ -87,7 +87,7 @@ class Rights:
         """Return the decision of the policy; see `Policy.decide`.
 
         Raises:
-            RefusedError: it does not; the refusal is in the audit log.
+            RefusedError: the policy refuses it; the refusal is in the audit log.
         """
         decision = self.decision(verb, name, type_name, message)
         if not decision.allowed:
@@ -97,7 +97,7 @@ class Rights:
     def refusal(
         self, verb: str, name: str, reason: str, code: str, message: Any = None
     ) -> RefusedError:
-        """Return the error of a refusal, and write the refusal down."""
+        """Return the error for a refusal, and record the refusal."""
         self.refused += 1
         self.refused_cheaply += code in {"held", "too_old"}
         self._robot.audit.note(
@@ -107,7 +107,7 @@ class Rights:
         return RefusedError(f"{verb} {name}", reason, code)
 
     async def allow(self, verb: Verb, name: str, type_name: str, message: Any) -> Decision:
-        """Return the decision of the policy, within its rate, and after a person has said yes.
+        """Return the decision of the policy, checking the rate, and asking a person if required.
 
         Raises:
             RefusedError: it is not allowed.
@@ -120,15 +120,15 @@ class Rights:
             )
         if decision.ask:
             await self._ask(verb, name, decision.message)
-            # A person takes a while, in which the policy may have changed.
+            # Asking a person takes a while, during which the policy may have changed.
             decision = self.decide(verb, name, type_name, message)
         return decision
 
     async def confirm(self, verb: Verb, name: str, type_name: str, message: Any) -> None:
-        """Ask a person now, if the policy wants one asked.
+        """Ask a person now, if the policy requires it.
 
         Raises:
-            RefusedError: the policy does not allow it, or no person has said yes.
+            RefusedError: the policy does not allow it, or no person has approved.
         """
         decision = self.decide(verb, name, type_name, message)
         if decision.ask:
@@ -138,21 +138,21 @@ class Rights:
         ask = self.ask or self._robot.ask
         if ask is None:
             raise self.refusal(
-                verb, name, "a person has to say yes, and nobody is there to ask",
+                verb, name, "a person has to approve, and there is nobody to ask",
                 "not_confirmed", message,
             )  # fmt: skip
         if not await ask(self.identity, verb, name, message):
             raise self.refusal(verb, name, "a person has said no", "not_confirmed", message)
 
     def sees(self, name: str, type_names: Iterable[str]) -> bool:
-        """Return whether the client may see a name with one of some types, or without any."""
+        """Return whether the client may see a name with any of some types, or without a type."""
         return any(self.decision("see", name, kind).allowed for kind in type_names or [""])
 
     @contextmanager
     def one_more(self, verb: str, name: str, what: str, held: Sized, most: int) -> Iterator[None]:
-        """Count one more of something that a client may have a limited number of, during the block.
+        """Count one more of something limited for each client, during the block.
 
-        Those that are being made count, too: several at once would each find the last place.
+        Those still being created count too: several at once would each find the last place.
 
         Args:
             verb: What the client does.
@@ -162,7 +162,7 @@ class Rights:
             most: The limit.
 
         Raises:
-            RefusedError: there are as many.
+            RefusedError: the limit is reached.
         """
         there_are = len(held) + self._coming[what]
         if there_are >= most:
@@ -175,15 +175,15 @@ class Rights:
             self._coming[what] -= 1
 
     def one_call(self, verb: str, name: str) -> AbstractContextManager[None]:
-        """Count one more call, goal, or question to a node, while the block lasts."""
+        """Count one more call, goal or node query for the duration of the block."""
         what = "calls, goals and questions under way"
         return self.one_more(verb, name, what, (), self.limits.calls)
 
     def check_size(self, verb: Verb, name: str, decision: Decision, message: Message) -> None:
-        """Refuse a message that is larger than its rule allows.
+        """Refuse a message larger than its rule allows.
 
         Raises:
-            RefusedError: it is.
+            RefusedError: it is too large.
         """
         most = None if decision.rule is None else decision.rule.max_bytes
         if most is None:
@@ -194,7 +194,7 @@ class Rights:
             raise self.refusal(verb, name, f"it has more than {most} bytes", "too_large")
 
     def decide_parameter(self, node: str, parameter: Parameter) -> Parameter:
-        """Return a parameter that the client may set, within its limits.
+        """Return a parameter that the client may set, clamped to its limits.
 
         Raises:
             RefusedError: it may not.
@@ -217,11 +217,11 @@ class Rights:
                 )
 
     def visible(self, named: Any, *, hidden: bool) -> dict[str, list[str]]:
-        """Return the names with their types that the client may see.
+        """Return the names that the client may see, with their types.
 
         Args:
             named: Pairs of a name and its types.
-            hidden: Whether names that ROS hides are among them.
+            hidden: Whether to include names that ROS hides.
         """
         return {
             name: types

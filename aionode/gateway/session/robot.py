@@ -1,4 +1,4 @@
-"""The robot, as the sessions of a gateway share it: node, policy, and endpoints in use."""
+"""The robot, as shared by the sessions of a gateway: node, policy, and endpoints in use."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ if TYPE_CHECKING:
 __all__ = ["Ask", "Rates", "Robot"]
 
 Ask = Callable[["Identity", "Verb", str, Any], Awaitable[bool]]
-"""Asks a person whether a client may do something: called with the client, what it wants to do,
-with which name, and what it sends. Returns whether the person says yes."""
+"""Asks a person whether a client may do something: called with the client, the verb, the name, and
+the message. Returns whether the person approves."""
 
 BASES: Final = {"msg": Message, "srv": ServiceType, "action": ActionType}
 MOST_TYPES: Final = 1000
 MOST_RATES: Final = 10_000
 
 LONGEST_TYPE: Final = 255
-"""The longest name of a type, in characters: similar names are sought for one that is unknown."""
+"""The longest name of a type, in characters: for an unknown name, similar ones are searched."""
 
 
 class Robot:
-    """The robot, as the sessions of a gateway share it.
+    """The robot, as shared by the sessions of a gateway.
 
     Args:
         node: The node of the gateway.
         policy: Who may do what.
         audit: The audit log.
         tasks: Run the leases, and encode large messages.
-        ask: Asks a person; None if there is nobody to ask.
+        ask: Asks a person for approval; None if there is nobody to ask.
 
     Attributes:
-        turn: Held by who encodes a large message, or asks about the graph: one at a time.
-        making: Held by who makes a large message of what a client has sent, in a thread.
-        owners: Knows whose the goals are, and makes the clients that send them.
-        standstills: Notices that the event loop stood still.
-        refusals: Counts and logs what clients are refused, and what is dropped or late of theirs.
+        turn: A lock held while encoding a large message, or querying the graph.
+        making: A lock held while a large message is created in a thread from a client's data.
+        owners: Knows the owners of goals, and creates the action clients that send them.
+        standstills: Notices that the event loop was stalled.
+        refusals: Counts and logs what is refused, dropped or late.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class Robot:
         self._changes = -1
 
     async def find_type(self, name: str, kind: str) -> Any:
-        """Return the class of a type, once made for all.
+        """Return the class of a type, created once for all clients.
 
         Args:
             name: Its name: ``std_msgs/msg/String``, or ``std_msgs/String``.
@@ -97,7 +97,9 @@ class Robot:
             InterfaceNotFoundError: neither this program nor a node that uses it describes it.
         """
         full = type_text(name, kind)
-        misfit = InterfaceNotFoundError(name[:200], problem=f"this is no name of a type of {kind}")
+        misfit = InterfaceNotFoundError(
+            name[:200], problem=f"this is not the name of a type of {kind}"
+        )
         # Actions consist of services and messages, and services of messages.
         of = rf"\w+/({kind}/\w+|(srv|action)/\w+_\w+)"
         if len(full) > LONGEST_TYPE or not re.fullmatch(of, full, re.ASCII):
@@ -130,13 +132,13 @@ class Robot:
         return self._types[key]
 
     def close(self) -> None:
-        """Destroy the endpoints that are shared."""
+        """Destroy the shared endpoints."""
         self.standstills.stop()
         self.shared.close()
 
 
 class Rates:
-    """The rates of uses that rules limit: a bucket for each client, rule and name.
+    """The rates of uses limited by rules: a bucket for each client, rule and name.
 
     Args:
         now_ns: The steady clock, in nanoseconds.
@@ -144,7 +146,7 @@ class Rates:
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
-        # With its rule, which therefore lives, so that no other one has its id.
+        # Keeping the rule alive ensures that no other rule gets the same id.
         self._buckets: Recent[tuple[str, int, str], tuple[Rule, Bucket]] = Recent(MOST_RATES)
 
     def allows(self, identity: Identity, rule: Rule, name: str) -> bool:

@@ -17,7 +17,7 @@ __all__ = ["Served", "serve", "serve_action"]
 class Served:
     """A service or action that a client offers; `close` ends it.
 
-    Calls in progress get an error then, and goals in progress are aborted.
+    Calls in progress then get an error, and goals in progress are aborted.
     """
 
     def __init__(self, entity: Any) -> None:
@@ -38,7 +38,7 @@ def serve(
     async def handle(request: Any) -> Any:
         return as_message(cls.Response, await answer(request), node.get_clock())
 
-    # The caller is told of an error; it is the client's, and nothing for the log of the robot.
+    # The caller gets the error; it is the client's, and does not belong in the robot's log.
     service_server = node.create_service(cls, service, handle, concurrent=most, on_error=ignore)
     return Served(service_server)
 
@@ -46,7 +46,7 @@ def serve(
 def serve_action(
     node: Node, action: str, cls: Any, execute: Callable[[Any], Awaitable[Any]], most: int
 ) -> Served:
-    """Offer an action whose goals `execute` executes; at most so many at once."""
+    """Offer an action whose goals `execute` executes, with a concurrency limit."""
     from aionode.action import ActionServer, CancelResponse  # few clients offer actions
 
     async def run(goal: Any) -> Any:
@@ -72,4 +72,4 @@ def serve_action(
 
 
 def ignore(error: Exception, context: object) -> None:  # an OnError
-    """Leave an error of a client to those who are told of it."""
+    """Ignore an error of a client, which is reported to the callers."""

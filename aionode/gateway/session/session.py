@@ -1,4 +1,4 @@
-"""The session of one client: each way in makes one, and it asks the policy first."""
+"""The session of one client: each protocol creates one, and it asks the policy first."""
 
 from __future__ import annotations
 
@@ -53,44 +53,45 @@ __all__ = ["Session"]
 CHANGED: Final = "the policy has changed"
 
 SERVER_SEC: Final = 1.0
-"""Time for which a call or goal waits for its server, in seconds."""
+"""How long a call or goal waits for its server, in seconds."""
 
 PUBLISHED: Final = QoSProfile(
     depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1)
 )
-"""For publishers of clients, which publish at once: a subscription within a second gets it."""
+"""For publishers of clients, which publish at once: a subscription within a second still gets
+it."""
 
 COMMANDS: Final = QoSProfile(depth=10)
-"""For commands: an old one must not reach a subscription that comes late."""
+"""For commands: an old one must not reach a subscription that is created later."""
 
 
 class Session:
-    """All that one client does with the robot, and gives back when it leaves.
+    """Everything that one client does with the robot, and releases when it leaves.
 
-    An async context manager. Its end closes the subscriptions, ends the leases of commands, which
-    sends their stops, cancels the goals, and ends the services that the client offers.
+    An async context manager. On exit it closes the subscriptions, ends the leases of commands,
+    which sends their stops, cancels the goals, and ends the services that the client offers.
 
     All methods raise RefusedError, before they touch the robot, if the policy refuses.
 
     Args:
-        robot: The robot, as all sessions of a gateway share it.
+        robot: The robot, as shared by all sessions of a gateway.
         identity: Who the client is.
-        kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``, ``mcp``.
-        credentials: The evidence of its identity; None if the program makes the session itself.
+        kind: The protocol, for the audit log: ``rosbridge``, ``foxglove``, ``http``, ``mcp``.
+        credentials: The evidence of its identity; None if the program creates the session itself.
 
     Attributes:
         robot: The robot.
-        kind: The way in.
+        kind: The protocol.
         credentials: The evidence of the client's identity.
         rights: Who the client is, what it may do, and what it was refused.
-        arrivals: When that arrived which the client has sent, and whether it may be old.
+        arrivals: The arrival times of the client's frames, and whether they may be old.
         graph: The graph as the client may see it.
         parameters: The parameters of nodes.
         outbox: The frames that wait for the client.
-        ended: Set when the client has to leave: the gateway ends, the policy does not know the
-            client any more, or another one takes its place.
-        end_reason: Why, as the client is told; empty if it is not.
-        owner: Who holds the topics that the client commands: the session, which ends the leases
+        ended: Set when the client has to leave: the gateway is stopping, the policy no longer knows
+            the client, or another client takes its place.
+        end_reason: The reason given to the client; empty for none.
+        owner: The holder of the topics that the client commands: the session, which ends the leases
             when it ends, or something that outlives it.
         on_policy: Called when the policy has changed, with the subscriptions that it has ended.
     """
@@ -113,7 +114,8 @@ class Session:
         self.on_policy: Callable[[list[Subscribed]], object] = ignore
         self._subscribed: dict[Subscribed, None] = {}
         self._topics_of: dict[Hashable, str] = {}  # by the keys of queues in the outbox
-        # By topic: the publisher, what gives it back, and what was published since the audit line.
+        # By topic: the publisher, the function that releases it, and the count since the last audit
+        # line.
         self._published: dict[str, tuple[Any, Callable[[], None]]] = {}
         self._counts: dict[str, int] = defaultdict(int)
         self._noted_ns: dict[str, int] = {}
@@ -133,7 +135,7 @@ class Session:
         return self.kind
 
     def doubt(self, *, stood_still: bool = False) -> None:
-        """Refuse commands until the client gives a sign; see `Arrivals.doubt`."""
+        """Refuse commands until the client responds; see `Arrivals.doubt`."""
         self.arrivals.doubt(stood_still=stood_still)
 
     def end(self, reason: str) -> None:
@@ -144,15 +146,15 @@ class Session:
 
     def _note_slow(self, key: Hashable) -> None:
         topic = self._topics_of.get(key, str(key))
-        reason = "messages are dropped: it reads more slowly than they come"
+        reason = "messages are dropped: it reads more slowly than they arrive"
         self.rights.note(Refusal.SLOW, topic, reason)
 
     def _note_overflow(self) -> None:
-        reason = "it does not read answers to what it asks"
+        reason = "it does not read the answers to its requests"
         self.rights.note(Refusal.DISCONNECTED, "connection", reason)
 
     async def __aenter__(self) -> Self:
-        """Begin; nothing of the robot is touched yet."""
+        """Start; the robot is not touched yet."""
         return self
 
     async def __aexit__(
@@ -161,12 +163,12 @@ class Session:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Give everything back: the stops of leases first."""
+        """Release everything, the stops of leases first."""
         try:
             await self.robot.commands.leave(self)
         finally:
             for goal in list(self._goals):
-                async with goal:  # its end cancels the goal, and waits for nothing
+                async with goal:  # its end cancels the goal, without waiting
                     pass
             for subscribed in list(self._subscribed):
                 subscribed.close()
@@ -179,7 +181,7 @@ class Session:
     # Names and types
 
     async def message_class(self, type_name: str) -> Any:
-        """Return the class of a message type: of this program, or as a node describes it.
+        """Return the class of a message type, from this program or as described by a node.
 
         Raises:
             InterfaceNotFoundError: nobody knows it.
@@ -199,8 +201,8 @@ class Session:
     ) -> Any:
         """Return a message of a class; see `as_message`.
 
-        A large one is made in a thread, one at a time, as that takes up to a second. It may not
-        take more room than a frame of a client: in JSON, a large message is soon written.
+        A large one is created in a thread, one at a time, as that takes up to a second. It may not
+        take more memory than a frame of a client: in JSON, a large message is quickly written.
         """
         clock = self.robot.node.get_clock()
         if isinstance(values, Message) or not is_large(values):
@@ -235,7 +237,7 @@ class Session:
         return self._settled(self.robot.node.resolve_service_name, name)
 
     def _settled(self, resolve: Callable[[str], str], name: str) -> str:
-        """Return the name that an endpoint gets, about which the policy is asked."""
+        """Return the name that an endpoint will get, for which the policy is asked."""
         full = resolve(name)
         if resolve(full) != full:  # two remap rules, one after the other
             raise RefusedError(name, f"the gateway's node remaps {full} once more")
@@ -264,13 +266,13 @@ class Session:
 
         Args:
             topic: The name of the topic.
-            type_name: The name of its type; by default that which the graph shows.
+            type_name: The name of its type; by default the one in the graph.
             frame: Returns the client's frame for a message, or None for none.
-            key: Which queue of the outbox it waits in.
-            depth: How many frames may wait there, and messages for their time.
+            key: The queue of the outbox that it waits in.
+            depth: How many frames may wait there, and how many messages may wait for their time.
             qos: The profile; by default the strongest that all publishers offer.
-            min_period_sec: The shortest time between two messages, in seconds; of those that come
-                faster the newest wait, and the others are left out.
+            min_period_sec: The shortest time between two messages, in seconds; of those that arrive
+                faster the newest wait, and the others are omitted.
             prepare: Encodes a large message, so that `frame` has little left to do; see
                 `Preparing`.
 
@@ -296,14 +298,14 @@ class Session:
         return subscribed
 
     def _forget(self, subscribed: Subscribed) -> None:
-        """Forget a subscription that was closed."""
+        """Forget a closed subscription."""
         self._subscribed.pop(subscribed, None)
         self._topics_of.pop(subscribed.key, None)
 
     async def advertise(
         self, topic: str, type_name: str | None = None, qos: QoSProfile | None = None
     ) -> None:
-        """Make a publisher, which others that publish the same share.
+        """Create a publisher, shared with other clients that publish the same.
 
         Raises:
             RefusedError: the policy does not allow it, or there are too many.
@@ -314,14 +316,12 @@ class Session:
         if topic in self._published:
             return
         if topic == self.robot.audit.topic:
-            raise self.rights.refusal(
-                "publish", topic, "the gateway alone writes it", "not_allowed"
-            )
+            raise self.rights.refusal("publish", topic, "only the gateway writes it", "not_allowed")
         what, most = "topics that it publishes", self.rights.limits.advertised
         with self.rights.one_more("publish", topic, what, self._published, most):
             message_class = await self._type_to("publish", topic, type_name)
             decision = self.rights.decide("publish", topic, message_class.__ros_type__)
-            if topic in self._published:  # advertised twice at once
+            if topic in self._published:  # advertised twice at the same time
                 return
             profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
             make = partial(self.robot.node.create_publisher, message_class, topic, profile)
@@ -341,20 +341,20 @@ class Session:
         *,
         arrived_ns: int | None = None,
     ) -> None:
-        """Publish a message, or a command if the policy says that the topic has commands.
+        """Publish a message, or a command if the policy says that the topic carries commands.
 
         Args:
             topic: The name of the topic.
             values: The message, its values, or its CDR bytes.
             type_name: The type, if the client has not advertised the topic.
-            arrived_ns: When the frame arrived, in nanoseconds of the steady clock; by default when
-                that which is handled did.
+            arrived_ns: When the frame arrived, in nanoseconds of the steady clock; by default that
+                of the current frame.
 
         Raises:
             RefusedError: the policy does not allow it; another client commands the topic; the
                 command is too old.
             MessageError: a value does not fit its field (a ValueError).
-            DecodeError: the bytes are no such message (a ValueError).
+            DecodeError: the bytes are not such a message (a ValueError).
             InterfaceNotFoundError: nobody knows the type.
         """
         arrived_ns = self.arrivals.arrival_ns() if arrived_ns is None else arrived_ns
@@ -393,12 +393,12 @@ class Session:
         await commands.publish(publisher, self.owner, self.identity, lease, decision.message)
 
     async def json_of(self, received: Received) -> bytes:
-        """Return the JSON of a message of a topic, which is written once for all clients.
+        """Return the JSON of a message of a topic, written once for all clients.
 
-        The event loop turns while a large one is written.
+        The event loop runs while a large one is written.
 
         Raises:
-            DecodeError: the bytes are no message of its type (a ValueError).
+            DecodeError: the bytes are not a message of its type (a ValueError).
         """
         await prepared(self.robot, prepare_json, received)
         return received.once("json", lambda taken: json_of(taken.message))
@@ -406,7 +406,7 @@ class Session:
     async def _type_to(self, verb: Verb, topic: str, type_name: str | None) -> Any:
         """Return the class of a topic's messages, if the policy may allow a verb.
 
-        Only then is a type looked up, imported, or asked from a node.
+        Only then is a type looked up, imported, or requested from a node.
 
         Raises:
             RefusedError: the policy does not allow it, whatever the type is.
@@ -416,14 +416,14 @@ class Session:
         return await self.message_class(type_name or self.graph.type_of(topic, "topic"))
 
     def dropped(self) -> dict[str, int]:
-        """Return how many frames of each topic were dropped, as the client was too slow."""
+        """Return how many frames of each topic were dropped because the client was too slow."""
         counts: dict[str, int] = defaultdict(int)
         for subscribed in self._subscribed:
             counts[subscribed.topic] += subscribed.dropped
         return dict(counts)
 
     def _note_published(self, topic: str, message: Message) -> None:
-        """Write down the publishing: once a second for each topic, with a count."""
+        """Record publishing in the audit log: once a second for each topic, with a count."""
         self._counts[topic] += 1
         now_ns = self.robot.time_base.steady_ns()
         if now_ns - self._noted_ns.get(topic, -S_TO_NS) >= S_TO_NS:
@@ -434,7 +434,7 @@ class Session:
             )  # fmt: skip
 
     async def unadvertise(self, topic: str) -> None:
-        """Give a publisher back, and end the lease of its commands, which sends the stop."""
+        """Release a publisher, and end the lease of its commands, which sends the stop."""
         topic = self.topic_name(topic)
         await self.robot.commands.leave(self.owner, topic)
         self._give_back(topic)
@@ -459,18 +459,18 @@ class Session:
     ) -> Any:
         """Call a service, and return the response message.
 
-        Cancelling it drops the call on both sides, as `Client.call` says.
+        Cancelling drops the call on both sides; see `Client.call`.
 
         Args:
             service: The name of the service.
             values: The request, its values by name or in order, or its CDR bytes.
-            type_name: The type; by default that which the graph shows.
-            timeout_sec: The longest wait for the response, in seconds; None waits for ever.
+            type_name: The type; by default the one in the graph.
+            timeout_sec: The longest wait for the response, in seconds; None waits forever.
             arrived_ns: As for `publish`.
 
         Raises:
             RefusedError: the policy does not allow it; there are too many calls at once; it may
-                have waited while the gateway stood still.
+                have waited while the gateway was stalled.
             ServiceError: there is no server, or its handler failed.
             RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
             MessageError: a value does not fit its field (a ValueError).
@@ -497,10 +497,10 @@ class Session:
         return seen_response(self.rights, self.robot, service, response)
 
     def wait_sec(self, wanted_sec: float | None) -> float:
-        """Return for how long a call of the client waits for its response, in seconds.
+        """Return how long a call of the client waits for its response, in seconds.
 
         Args:
-            wanted_sec: What the client wants; None if it does not say.
+            wanted_sec: The time requested by the client; None for none.
         """
         limits = self.rights.limits
         return min(limits.call_sec if wanted_sec is None else wanted_sec, limits.longest_call_sec)
@@ -532,12 +532,12 @@ class Session:
         Args:
             action: The name of the action.
             values: The goal, or its values by name or in order.
-            type_name: The type; by default that which the graph shows.
+            type_name: The type; by default the one in the graph.
             arrived_ns: As for `publish`.
 
         Raises:
             RefusedError: the policy does not allow it; there are too many goals at once; it may
-                have waited while the gateway stood still.
+                have waited while the gateway was stalled.
             ServiceError: there is no server.
             GoalRejectedError: the server rejected it.
             MessageError: a value does not fit its field (a ValueError).
@@ -570,14 +570,14 @@ class Session:
     def _attempt(
         self, verb: Verb, name: str, cls: Any, message: Any, make: Callable[[], Any]
     ) -> Iterator[Attempt]:
-        """Send a call or goal within the block, and write down its result.
+        """Send a call or goal within the block, and record its result.
 
         Args:
             verb: ``call`` or ``goal``.
             name: The service or action.
             cls: Its type.
             message: The request or goal.
-            make: Makes the client that sends it, which sessions share.
+            make: Creates the client that sends it, which sessions share.
         """
         client, give_back = self.robot.shared.take((verb, name, cls), make)
         attempt = Attempt(client, (verb, name, cls.__ros_type__))
@@ -606,8 +606,8 @@ class Session:
         Args:
             service: The name of the service.
             type_name: The name of its type.
-            answer: Called with each request; returns the response message. An exception of it
-                reaches the caller of the service as a ServiceError.
+            answer: Called with each request; returns the response message. The caller of the
+                service gets an exception as a ServiceError.
 
         Raises:
             RefusedError: the policy does not allow it, or there are too many.
@@ -668,14 +668,13 @@ class Session:
         self.robot.audit.note(self.identity, "advertise", name, way=self.kind)
         return served
 
-    # A policy that has changed
+    # Changes of the policy
 
     def check_again(self) -> None:
-        """End all that the policy, which was read again, does not allow any more.
+        """End everything that a new version of the policy no longer allows.
 
-        A subscription ends by itself, and the client is told. For a call, a goal, a publisher, or a
-        service that it offers, the client is disconnected, which ends them as they end with any
-        client.
+        A subscription ends alone, and the client is notified. For a call, a goal, a publisher or a
+        service that it offers, the client is disconnected, which ends them in the usual way.
         """
         policy = self.robot.policy
         if self.credentials is not None:
@@ -693,12 +692,14 @@ class Session:
         held += [("advertise", name, self._served_types[name]) for name in self._served]
         if not all(self.rights.decision(*request).allowed for request in held):
             self.rights.note(
-                Refusal.DISCONNECTED, "connection", f"{CHANGED}, by what it has under way"
+                Refusal.DISCONNECTED,
+                "connection",
+                f"{CHANGED}, and no longer allows what the client does",
             )
             self.ended.set()  # which cancels its goals, and sends the stops of its leases
 
     def _end_subscriptions(self) -> None:
-        """End the subscriptions that the policy does not allow any more."""
+        """End the subscriptions that the policy no longer allows."""
         ended = []
         for subscribed in list(self._subscribed):
             topic, type_name = subscribed.topic, subscribed.type_name
@@ -711,7 +712,7 @@ class Session:
 
 
 class Attempt:
-    """A call or goal under way.
+    """A call or goal in progress.
 
     Attributes:
         client: Sends it.

@@ -1,4 +1,4 @@
-"""Endpoints that clients share: made for the first one, and destroyed a while after the last."""
+"""Endpoints shared by clients: created for the first one, and destroyed a while after the last."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 __all__ = ["Shared"]
 
 LINGER_NS: Final = 10 * S_TO_NS
-"""For how long an endpoint stays without a user: a page that is loaded again finds it."""
+"""How long an endpoint stays without a user: a page that is reloaded finds it again."""
 
 MOST_UNUSED: Final = 100
-"""Endpoints that stay without a user: clients may use one name after the other."""
+"""Number of endpoints that stay without a user: clients may use one name after another."""
 
 
 class Shared:
     """Endpoints by their keys: name, type and profile.
 
     Args:
-        time_base: Counts the time for which an unused one stays.
+        time_base: Measures how long an unused endpoint stays.
         linger_ns: That time, in nanoseconds.
     """
 
@@ -39,7 +39,7 @@ class Shared:
         return len(self._entities)
 
     def take(self, key: Hashable, make: Callable[[], Any]) -> tuple[Any, Callable[[], None]]:
-        """Return an endpoint, and a function that gives it back.
+        """Return an endpoint, and a function that releases it.
 
         Args:
             key: Its name, type and profile: two that ask for the same get the same one.
@@ -82,6 +82,6 @@ class Shared:
             entity.destroy()
 
     def close(self) -> None:
-        """Destroy all."""
+        """Destroy all endpoints."""
         for key in list(self._entities):
             self._destroy(key)

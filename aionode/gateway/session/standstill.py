@@ -1,4 +1,4 @@
-"""Noticing that the event loop stood still: what it reads then was sent long before."""
+"""Detects standstills of the event loop: data that it reads afterwards was sent long before."""
 
 from __future__ import annotations
 
@@ -14,32 +14,32 @@ if TYPE_CHECKING:
 __all__ = ["Standstills"]
 
 LOOK_NS: Final = S_TO_NS // 10
-"""The time between two looks at the clock, in nanoseconds."""
+"""The time between two checks of the clock, in nanoseconds."""
 
 LATE_NS: Final = 3 * S_TO_NS // 20
-"""A look that is later than this shows that the loop stood still, in nanoseconds."""
+"""A check later than this shows that the loop was stalled, in nanoseconds."""
 
 LONG_NS: Final = S_TO_NS
-"""A standstill from this length on makes old what comes once, as calls and goals do: commands come
-again, and so may be refused after any."""
+"""From this length on, a standstill invalidates one-time requests such as calls and goals; commands
+are repeated, and so may be refused after any standstill."""
 
 READ_NS: Final = S_TO_NS // 5
-"""Time after a standstill in which everything that was sent meanwhile has been read: connections
-that were made in it are accepted first, which takes some turns of the loop."""
+"""Time after a standstill by which everything sent meanwhile has been read: connections made during
+it are accepted first, which takes some loop iterations."""
 
 
 class Standstills:
-    """Notices standstills of the loop: a callback that blocks it, SIGSTOP, a host that sleeps.
+    """Detects standstills of the loop: a callback that blocks it, SIGSTOP, a suspended host.
 
-    The kernel takes what clients send meanwhile, and it is read as if it had just arrived. A look
-    by an alarm comes too late for what is read in the same turn, so who reads looks as well.
+    The kernel buffers what clients send meanwhile, and it is then read as if it had just arrived. A
+    check by an alarm comes too late for data read in the same iteration, so readers check as well.
 
     Args:
-        time_base: Shows the time.
+        time_base: The source of time.
 
     Attributes:
-        until_ns: What was read until then may be old, in nanoseconds of the steady clock.
-        long_until_ns: The same for the last standstill that was long.
+        until_ns: Data read until then may be old, in nanoseconds of the steady clock.
+        long_until_ns: The same for the last long standstill.
     """
 
     def __init__(self, time_base: TimeBase) -> None:
@@ -52,19 +52,19 @@ class Standstills:
         self._alarm: Alarm | None = None
 
     def watch(self, on_standstill: Callable[[bool], None]) -> None:
-        """Look from now on, and call a function after each standstill, with whether it was long."""
+        """Check from now on, and call a function after each standstill with whether it was long."""
         self._on_standstill = on_standstill
         self._looked_ns = self._clock.steady_ns()
         self._ring()
 
     def stop(self) -> None:
-        """Look no more."""
+        """Stop checking."""
         self._on_standstill = None
         if self._alarm is not None:
             self._alarm.cancel()
 
     def look(self) -> None:
-        """Record a turn of the loop; after too long without one, everything read now may be old."""
+        """Record a loop iteration; after too long without one, everything read now may be old."""
         if self._on_standstill is None:
             return
         now_ns = self._clock.steady_ns()
@@ -79,7 +79,7 @@ class Standstills:
             self._on_standstill(is_long)
 
     def since_sec(self) -> float:
-        """Return how long the last standstill has been over, in seconds."""
+        """Return how long ago the last standstill ended, in seconds."""
         if self._ended_ns is None:
             return math.inf
         return (self._clock.steady_ns() - self._ended_ns) / S_TO_NS

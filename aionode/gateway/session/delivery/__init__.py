@@ -1,1 +1,1 @@
-"""From a message of the robot to a frame for one client, in queues that slow nobody else."""
+"""From a message of the robot to a frame for one client, without slowing others down."""

@@ -39,13 +39,13 @@ Frame: TypeAlias = bytes | str | LongFrame
 """A WebSocket frame, or a chunk of an HTTP response."""
 
 LONG_BYTES: Final = 256 << 10
-"""From which size on a frame is kept in pieces where it is made of some."""
+"""Size from which a frame made of pieces is kept in pieces."""
 
 
 def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
-    """Return a frame of a head and data; bytes are not copied if they are long.
+    """Return a frame of a header and data; long bytes are not copied.
 
-    A view is copied: its memory may belong to others, who wait for it.
+    A memory view is copied: its memory may belong to others, who wait for it.
     """
     if type(data) is bytes and len(data) > LONG_BYTES:
         return LongFrame((head, data), is_text=False)
@@ -53,7 +53,7 @@ def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
 
 
 MOST_ANSWERS: Final = 1000
-"""Answers that may wait: a client that reads none of them is disconnected."""
+"""Number of answers that may wait: a client that reads none of them is disconnected."""
 
 
 def ignore(*_: object) -> None:
@@ -61,21 +61,21 @@ def ignore(*_: object) -> None:
 
 
 class Outbox:
-    """The frames that wait for one client, and the order in which they leave.
+    """The frames that wait for one client, and the order in which they are sent.
 
-    Answers leave first. Of topics, each has its turn, and keeps its newest frames: the oldest are
+    Answers are sent first. Topics take turns, and each keeps its newest frames: the oldest are
     dropped and counted.
 
     Args:
-        most_bytes: How much may wait. Beyond it, the topic that has the most waiting loses its
-            oldest frames.
+        most_bytes: The most bytes that may wait. Beyond that, the topic with the most waiting bytes
+            loses its oldest frames.
 
     Attributes:
         dropped: Number of frames dropped, by key.
         sent: Number of frames sent.
         overflowed: Whether it was closed because the client reads no answers.
-        direct: Sends a frame at once, if it can, and returns whether it did: while nothing waits, a
-            frame needs no turn of the task that writes. None if there is no such way.
+        direct: Sends a frame at once if possible, and returns whether it did: while nothing waits,
+            a frame need not go through the writing task. None if that is not possible.
         on_drop: Called with the key of each frame that is dropped, unless only the newest was
             wanted.
         on_overflow: Called when it is closed because the client reads no answers.
@@ -97,7 +97,7 @@ class Outbox:
         self._turns: deque[Hashable] = deque()  # each key that has frames, once
         self._filled = asyncio.Event()
         self._closed = False
-        self._is_leaving = False  # a frame, which none of a later message may overtake
+        self._is_leaving = False  # a frame that no frame of a later message may overtake
 
     @property
     def waiting_bytes(self) -> int:
@@ -105,10 +105,10 @@ class Outbox:
         return self._bytes
 
     def put(self, key: Hashable, frame: Frame, depth: int = 10) -> None:
-        """Add a frame of a topic; beyond `depth` of them the oldest is dropped.
+        """Add a frame of a topic; beyond `depth` frames, the oldest is dropped.
 
         Args:
-            key: Which queue it belongs to, such as the name of the topic.
+            key: The key of its queue, such as the name of the topic.
             frame: The frame.
             depth: Maximum number of waiting frames with this key.
         """
@@ -133,9 +133,9 @@ class Outbox:
         self._filled.set()
 
     def send(self, frame: Frame) -> None:
-        """Add an answer, which leaves before all frames of topics.
+        """Add an answer, which is sent before all frames of topics.
 
-        A client that lets too many of them wait is disconnected: the outbox is closed then.
+        If too many answers wait, the outbox is closed, which disconnects the client.
         """
         if self._closed:
             return
@@ -165,7 +165,7 @@ class Outbox:
         self._filled.set()
 
     async def __aiter__(self) -> AsyncIterator[Frame]:
-        """Yield the frames until the outbox is closed. For the one task that writes."""
+        """Yield the frames until the outbox is closed. For the one writing task."""
         while not self._closed:
             frame = self.next_frame()
             if frame is None:

@@ -1,4 +1,4 @@
-"""Limits the rate of messages to a client; the newest ones wait for their time."""
+"""Limits the rate of messages to a client; of those that come too early, the newest wait."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ __all__ = ["Pacing"]
 
 
 class Pacing:
-    """Delivers messages with a shortest time between them, the last of a burst too.
+    """Delivers messages with a minimum time between them, including the last of a burst.
 
-    Those that come earlier wait, the newest of them only: what was true last is always told.
+    Messages that come earlier wait, but only the newest of them, so that the latest state is always
+    delivered.
 
     Args:
-        time_base: Drives it.
+        time_base: The source of time.
         period_ns: The shortest time between two messages, in nanoseconds.
         deliver: Called with each message when its time has come.
         depth: Maximum number of waiting messages.
@@ -49,7 +50,7 @@ class Pacing:
         self._watch()
 
     def close(self) -> None:
-        """Forget what waits."""
+        """Forget the waiting messages."""
         self._waiting.clear()
         if self._alarm is not None:
             self._alarm.cancel()
@@ -59,7 +60,7 @@ class Pacing:
         self._deliver(received)
 
     def _watch(self) -> None:
-        """Ring when the oldest message may leave."""
+        """Set an alarm for the time at which the oldest message may leave."""
         if self._alarm is None and self._waiting:
             self._alarm = self._time_base.call_at(self._due_ns, self._ring)
 

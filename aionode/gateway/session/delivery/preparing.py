@@ -29,10 +29,10 @@ LARGE_BYTES: Final = 128 << 10
 class Preparing:
     """The messages of one subscription of a client that wait to be encoded, in order.
 
-    One message of the gateway is encoded at a time, so that the loop turns after each slice of it.
+    The gateway encodes one message at a time, yielding to the event loop after each slice.
 
     Args:
-        robot: Has the turns, and runs the task.
+        robot: Grants the turns, and runs the task.
         prepare: Encodes a message.
         deliver: Takes each message once it is encoded.
         depth: Maximum number of waiting messages.
@@ -72,7 +72,7 @@ class Preparing:
             self._task = self._robot.tasks.create_task(self._run())
 
     def close(self) -> None:
-        """Forget what waits."""
+        """Forget the waiting messages."""
         self._waiting.clear()
         if self._task is not None:
             self._task.cancel()
@@ -92,7 +92,7 @@ class Preparing:
 async def prepared(robot: Robot, prepare: Prepare, received: Received) -> None:
     """Encode a message in its turn, if it is large.
 
-    One that is no message of its type is left as it is: `Received.once` raises the error of it.
+    A message that is invalid for its type is left unchanged: `Received.once` raises its error.
 
     Args:
         robot: Has the turns.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Subscribed"]
 
 EVENT: Final = "rcl_interfaces/msg/ParameterEvent"
-"""Contains parameter values, some of which a client may not be allowed to see."""
+"""Contains parameter values, some of which the client may not be allowed to see."""
 
 
 class Subscribed:
@@ -33,11 +33,11 @@ class Subscribed:
     Args:
         robot: The robot.
         rights: What the client may see.
-        outbox: Where its frames wait.
+        outbox: The queue for its frames.
         topic: The full name of the topic.
         message_class: The class of its messages.
         frame: Returns the frame of a message, or None for none.
-        key: Which queue of the outbox the frames wait in.
+        key: The queue of the outbox in which the frames wait.
         depth: Maximum number of frames waiting there.
         min_period_sec: The shortest time between two messages, in seconds.
         prepare: Encodes a large message; None if `frame` does.
@@ -47,7 +47,7 @@ class Subscribed:
         topic: The full name of the topic.
         type_name: The name of its type.
         message_class: The class of its messages.
-        key: Which queue of the outbox its frames wait in.
+        key: The queue of the outbox in which its frames wait.
         failed: Number of messages that could not be encoded because they are malformed.
         take: Called with each message of the topic.
     """
@@ -99,7 +99,7 @@ class Subscribed:
 
     @property
     def dropped(self) -> int:
-        """The number of messages that were dropped, as encoding them or the client was too slow."""
+        """The number of messages dropped because encoding or the client was too slow."""
         unprepared = 0 if self._preparing is None else self._preparing.dropped
         return unprepared + self._outbox.dropped.get(self.key, 0)
 
@@ -127,7 +127,7 @@ class Subscribed:
         self._rights.note(Refusal.UNREADABLE, f"subscribe {self.topic}", str(error))
 
     def close(self) -> None:
-        """Unsubscribe; frames that wait for the client are dropped."""
+        """Unsubscribe; frames waiting for the client are dropped."""
         if self._leave is not None:
             self._leave()
             self._leave = None
@@ -139,10 +139,10 @@ class Subscribed:
 
 
 def seen_event(rights: Rights, received: Received) -> Received | None:
-    """Return the event of parameters that the client may see; None without any.
+    """Return the parts of a parameter event that the client may see; None if there are none.
 
     Raises:
-        DecodeError: the bytes are no such event (a ValueError).
+        DecodeError: the bytes are not such an event (a ValueError).
     """
     event = received.message
     lists = ("new_parameters", "changed_parameters", "deleted_parameters")

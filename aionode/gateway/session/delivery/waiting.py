@@ -1,4 +1,4 @@
-"""Messages of one subscription of a client that wait, bounded in number and in bytes."""
+"""The waiting messages of one subscription of a client, limited in number and in bytes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 __all__ = ["Waiting"]
 
 MOST_BYTES: Final = 32 << 20
-"""Messages of one subscription that may wait; the oldest are dropped beyond it."""
+"""Bytes of one subscription's messages that may wait; beyond that, the oldest are dropped."""
 
 
 class Waiting:
@@ -42,7 +42,7 @@ class Waiting:
         return dropped
 
     def take(self) -> Received:
-        """Remove the oldest message, and return it."""
+        """Remove and return the oldest message."""
         received = self._messages.popleft()
         self._bytes -= len(received.raw)
         return received

@@ -1,1 +1,1 @@
-"""Messages as clients send and get them: JSON, CBOR, and images as pictures."""
+"""Messages in the forms that clients send and receive: JSON, CBOR, and images as pictures."""

@@ -1,4 +1,4 @@
-"""JSON of clients, and how much may be in it."""
+"""JSON from clients, and limits on its contents."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from aionode.errors import MessageError
 __all__ = ["check_items", "check_parts", "decoded", "is_large", "shown", "type_text"]
 
 VALUES_PER_PART: Final = 10
-"""As many times more values than objects and lists: to read a million takes some 50 ms."""
+"""Allowed values per object or list: reading a million takes some 50 ms."""
 
 MOST_ITEMS: Final = 10_000
-"""Items that the value of a parameter may have."""
+"""Number of items that the value of a parameter may have."""
 
 LARGE_ITEMS: Final = 1_000
-"""Beyond so many values, what is made of them is made in a thread: each takes some microseconds."""
+"""Above this many values, messages are created in a thread: each value takes some microseconds."""
 
 LARGE_BYTES: Final = 64 << 10
 """The limit for a message in CDR, which is decoded faster."""
@@ -28,12 +28,12 @@ LARGE_BYTES: Final = 64 << 10
 def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame") -> Any:
     """Return the value of JSON.
 
-    Python's json module also writes NaN and Infinity, which JSON has not.
+    Python's json module also accepts NaN and Infinity, which JSON does not have.
 
     Args:
         text: The JSON.
-        most_parts: How many objects and lists it may have: an empty object of two characters may
-            become a message of some kilobytes.
+        most_parts: The most objects and lists that it may contain: an empty object of two
+            characters may become a message of some kilobytes.
         what: The name of the data, for errors.
 
     Raises:
@@ -53,15 +53,15 @@ def check_parts(octets: bytes, most: int, what: str = "frame") -> None:
     Raises:
         MessageError: there are too many.
     """
-    limit = "as frame_parts of the gateway's limits says"
+    limit = "by frame_parts in the gateway's limits"
     has_many = octets.count(b",") > VALUES_PER_PART * most
     if not has_many and brackets(octets) <= most:
         return
     plain = without_texts(octets)
     if (count := brackets(plain)) > most:
-        raise MessageError(what, f"{count} objects and lists, at most {most} fit, {limit}")
+        raise MessageError(what, f"{count} objects and lists, at most {most} are allowed {limit}")
     if (count := plain.count(b",")) > VALUES_PER_PART * most:
-        problem = f"{count} values, at most {VALUES_PER_PART * most} fit, {limit}"
+        problem = f"{count} values, at most {VALUES_PER_PART * most} are allowed {limit}"
         raise MessageError(what, problem)
 
 
@@ -71,20 +71,20 @@ def brackets(octets: bytes) -> int:
 
 
 def without_texts(octets: bytes) -> bytes:
-    """Return JSON without its strings, each of which is between two quotation marks."""
+    """Return JSON without its strings, which are enclosed in quotation marks."""
     plain = octets.replace(rb"\\", b"").replace(rb"\"", b"")
     return b"".join(plain.split(b'"')[::2])
 
 
 def with_infinities(octets: bytes, what: str, error: Exception) -> object:
-    """Return the values of JSON as Python's json module writes them."""
+    """Return the values of JSON as written by Python's json module."""
     try:
         if b"NaN" in octets or b"Infinity" in octets:
             values = json.loads(octets)
-            msgspec.json.encode(values)  # halves of surrogate pairs raise, and huge numbers
+            msgspec.json.encode(values)  # lone surrogates and huge numbers raise
             return values
     except (ValueError, OverflowError, RecursionError):
-        pass  # the error of the first attempt is told
+        pass  # report the error of the first attempt
     raise MessageError(what, f"invalid JSON: {error}") from None
 
 
@@ -95,7 +95,7 @@ def check_items(value: object, what: str) -> None:
         MessageError: there are too many.
     """
     if isinstance(value, list) and len(value) > MOST_ITEMS:
-        raise MessageError(what[:200], f"{len(value)} items, at most {MOST_ITEMS} fit")
+        raise MessageError(what[:200], f"{len(value)} items, at most {MOST_ITEMS} are allowed")
 
 
 def is_large(values: object) -> bool:
@@ -116,18 +116,18 @@ def is_large(values: object) -> bool:
 
 
 def shown(value: object) -> str:
-    """Return a value, shortened: it may be nested deeper than Python's repr can follow."""
+    """Return a value as shortened text: it may be nested deeper than Python's repr can follow."""
     try:
         return reprlib.repr(value)
-    except ValueError:  # Python writes no numbers of thousands of digits
+    except ValueError:  # Python refuses to format numbers of thousands of digits
         return "a huge number"
 
 
 def type_text(name: str, kind: str) -> str:
-    """Return the name of a type with its kind, which clients omit: ``std_msgs/String``.
+    """Return the name of a type including its kind, which clients omit, as in ``std_msgs/String``.
 
     Args:
-        name: The name that a client has sent.
+        name: The name sent by a client.
         kind: ``msg``, ``srv`` or ``action``.
     """
     parts = name.split("/")

@@ -1,4 +1,4 @@
-"""Images as screens show them: eight bits of grey or of red, green and blue."""
+"""Images as screens show them: eight bits of grey, or of red, green and blue."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ YUYV: Final = {"yuv422_yuy2", "yuyv"}
 
 
 def eight_bits(message: Image) -> Image:
-    """Return an image as mono8, rgb8 or rgba8; one that is mono8 or rgb8 is returned as it is.
+    """Return an image as mono8, rgb8 or rgba8; a mono8 or rgb8 image is returned unchanged.
 
-    Grey of other types, as depth is, is scaled from its smallest to its largest value; what is no
-    number is dark. Colours of 16 bits lose the lower ones. Channels without names are OpenCV's:
-    blue, green, red. Of a Bayer pattern each square of four pixels gets one colour.
+    Grey of other types, such as depth, is scaled from its smallest to its largest value; NaN and
+    infinities become dark. 16-bit colours lose their lower bits. Unnamed channels are in OpenCV's
+    order: blue, green, red. Each square of four pixels of a Bayer pattern gets one colour.
 
     Raises:
         MessageError: its data is too short for its size, or its encoding is unknown (a ValueError).
-        ValueError: its channels are no colours.
+        ValueError: its channels are not colours.
     """
     encoding = message.encoding
     if encoding in {"mono8", "rgb8", "rgba8"}:
@@ -42,7 +42,7 @@ def eight_bits(message: Image) -> Image:
     if pixels.ndim == 2:
         return image.from_numpy(grey(pixels), "mono8")
     if pixels.shape[2] not in {3, 4}:
-        raise ValueError(f"{encoding}: {pixels.shape[2]} channels are no picture; 1, 3 and 4 fit")
+        raise ValueError(f"{encoding}: {pixels.shape[2]} channels cannot be shown; use 1, 3 or 4")
     colors = pixels >> 8 if encoding.endswith("16") else grey(pixels)
     order = [0, 1, 2] if encoding.startswith("rgb") else [2, 1, 0]
     order += [3] if pixels.shape[2] == 4 else []
@@ -51,7 +51,7 @@ def eight_bits(message: Image) -> Image:
 
 
 def grey(pixels: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
-    """Return numbers of any type as eight bits: as they are, or scaled by their range."""
+    """Return numbers of any type as eight bits: unchanged, or scaled by their range."""
     if pixels.dtype == np.uint8:
         return pixels
     numbers = pixels.astype(np.float64)
@@ -59,7 +59,7 @@ def grey(pixels: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
     if not finite.any():
         return np.zeros(pixels.shape, np.uint8)
     low, high = numbers[finite].min(), numbers[finite].max()
-    # The range of two large numbers may be none.
+    # The range of two large numbers may overflow.
     scaled = (numbers / 2 - low / 2) / (high / 2 - low / 2) * 255 if high > low else finite * 255.0
     return np.where(finite, np.round(scaled), 0.0).astype(np.uint8)
 
@@ -78,10 +78,10 @@ def from_bayer(pixels: npt.NDArray[np.uint8], pattern: str) -> npt.NDArray[np.ui
 
 
 def from_yuv(pixels: npt.NDArray[np.uint8], *, first: bool) -> npt.NDArray[np.uint8]:
-    """Return the colours of pixels in pairs that share theirs (BT.601).
+    """Return the colours of pixels whose chroma is shared by pairs (BT.601).
 
     Args:
-        pixels: Two bytes for each: brightness, and by turns the blue and the red difference.
+        pixels: Two bytes for each: brightness, and alternately the blue and the red difference.
         first: Whether the brightness is the first of them.
     """
     width = pixels.shape[1]
@@ -91,7 +91,7 @@ def from_yuv(pixels: npt.NDArray[np.uint8], *, first: bool) -> npt.NDArray[np.ui
         shared[:, start::2].repeat(2, axis=1)[:, :width] if width > 1 else np.zeros_like(bright)
         for start in (0, 1)
     )
-    if width % 2:  # the last pixel has no partner, and therefore the red of the one before
+    if width % 2:  # the last pixel has no partner, so it takes the red of the one before
         red = np.pad(red, ((0, 0), (0, width - red.shape[1])), "edge")
     colors = [bright + 1.402 * red, bright - 0.344 * blue - 0.714 * red, bright + 1.772 * blue]
     return np.clip(np.round(np.stack(colors, axis=2)), 0, 255).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""Frames of rosbridge: one message in JSON, CBOR, as it is (cbor-raw) or as a picture (png)."""
+"""Frames of rosbridge: one message as JSON, CBOR, CDR in CBOR (cbor-raw) or a picture (png)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ __all__ = [
 PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 
 LONG: Final = 0x5A
-"""The first byte of a CBOR byte string whose length follows in four bytes."""
+"""The first byte of a CBOR byte string whose length is given in the next four bytes."""
 
 
 def op_frame(op: dict[str, Any]) -> str:
@@ -44,7 +44,7 @@ def op_frame(op: dict[str, Any]) -> str:
 def json_frame(topic: str, message: Message | bytes) -> str:
     """Return a message of a topic as JSON, from the message or its JSON."""
     values = message if isinstance(message, bytes) else json_of(message)
-    # The message is copied once: it may be an image.
+    # The message is copied only once: it may be an image.
     return b"".join((json_head(topic), values, b"}")).decode()
 
 
@@ -54,7 +54,7 @@ def long_json_frame(topic: str, pieces: Sequence[bytes]) -> LongFrame:
 
 
 def json_head(topic: str) -> bytes:
-    """Return the part of a frame of JSON that stands before the message."""
+    """Return the part of a JSON frame before the message."""
     return msgspec.json.encode({"op": "publish", "topic": topic})[:-1] + b',"msg":'
 
 
@@ -64,7 +64,7 @@ def cbor_frame(topic: str, message: Message) -> bytes:
 
 
 def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes | LongFrame:
-    """Return an encoded message of a topic in a frame of CBOR, without decoding it.
+    """Return a CBOR frame with an encoded message of a topic, without decoding it.
 
     Args:
         topic: The name of the topic.
@@ -74,24 +74,24 @@ def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes 
     secs, nsecs = divmod(time_ns, 10**9)
     msg = {"secs": secs, "nsecs": nsecs, "bytes": b""}
     head = cbor2.dumps({"op": "publish", "topic": topic, "msg": msg})
-    # The bytes are the last value of the frame: all but the empty string is its head.
+    # The bytes are the last value of the frame, so everything before them is its header.
     return binary_frame(head[:-1] + struct.pack(">BI", LONG, len(data)), data)
 
 
 def png_frame(text: str) -> str:
-    """Return a frame of JSON as a PNG, compressed, in base64."""
+    """Return a frame of JSON compressed as a PNG, in base64."""
     return op_frame({"op": "png", "data": base64.b64encode(png_of(text)).decode()})
 
 
 async def png_frame_in_turns(text: str) -> LongFrame:
-    """Return what `png_frame` does, of long text, while the event loop turns."""
+    """Do the work of `png_frame` for long text, yielding to the event loop."""
     picture = await run_in_thread(png_of, text)
     parts = await base64_in_turns(memoryview(picture))
     return LongFrame((b'{"op":"png","data":"', *parts, b'"}'), is_text=True)
 
 
 def png_of(text: str) -> bytes:
-    """Return text as a PNG of three bytes in each pixel."""
+    """Return text as a PNG with three bytes in each pixel."""
     data = text.encode()
     width = max(math.isqrt(-(-len(data) // 3)), 1)
     stride = 3 * width
@@ -115,7 +115,7 @@ def png_chunk(kind: bytes, data: bytes) -> bytes:
 
 
 class Fragmented(str):
-    """A frame that leaves in fragments, as its client has asked for; it waits as one.
+    """A frame sent in fragments, as its client has requested; it waits as one.
 
     Attributes:
         size: The longest fragment, in characters.
@@ -128,7 +128,7 @@ class Fragmented(str):
 
     @classmethod
     def of(cls, frame: str, size: int, message_id: str) -> Fragmented:
-        """Return a frame that leaves in fragments of a size."""
+        """Return a frame to be sent in fragments of a size."""
         fragmented = cls(frame)
         fragmented.size, fragmented.message_id = size, message_id
         return fragmented
@@ -139,11 +139,11 @@ class Fragmented(str):
 
 
 MOST_FRAGMENTS: Final = 1000
-"""A frame leaves in no more parts, however small the client wants them."""
+"""The most fragments of a frame, however small the client wants them."""
 
 
 def fragments(frame: str, size: int, message_id: str) -> Iterator[str]:
-    """Yield a frame in parts of `size` characters, if it is longer."""
+    """Split a frame into parts of `size` characters, if it is longer."""
     size = max(size, -(-len(frame) // MOST_FRAGMENTS))
     if len(frame) <= size:
         yield frame

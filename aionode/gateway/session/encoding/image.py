@@ -1,4 +1,4 @@
-"""Images as pictures for browsers: files by Pillow, and compressed images as they are."""
+"""Images as pictures for browsers: files encoded by Pillow, and compressed images unchanged."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 __all__ = ["BOUNDARY", "IMAGE_TYPES", "Form", "Picture", "part_of", "picture_of"]
 
 IMAGE_TYPES: Final = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"}
-"""The messages that are also answered as pictures."""
+"""The message types that can also be answered as pictures."""
 
 BOUNDARY: Final = "picture"
-"""The line between the pictures of a stream (multipart/x-mixed-replace, also called MJPEG)."""
+"""The boundary between the pictures of a stream (multipart/x-mixed-replace, also called MJPEG)."""
 
 BEGINNINGS: Final = {
     b"\xff\xd8\xff": "image/jpeg",
@@ -50,7 +50,7 @@ class Form:
     Attributes:
         media_type: ``image/jpeg`` or ``image/png``; None for either.
         width: The largest width in pixels, 0 for any; the height follows.
-        quality: That of a JPEG, from 1 to 100; None for the usual one.
+        quality: The quality of a JPEG, from 1 to 100; None for the default.
     """
 
     media_type: str | None = None
@@ -59,11 +59,11 @@ class Form:
 
 
 async def picture_of(received: Received, form: Form) -> Picture:
-    """Return the picture of an image, which is encoded once for all clients, in a thread.
+    """Return the picture of an image, encoded in a thread once for all clients.
 
     Raises:
-        MessageError: the data is too short, or nothing that browsers show (a ValueError).
-        ValueError: the channels of the image are no colours.
+        MessageError: the data is too short, or in no format that browsers show (a ValueError).
+        ValueError: the channels of the image are not colours.
         ModuleNotFoundError: Pillow, which encodes it, is not installed.
     """
     outcome = await asyncio.shield(received.once(form, lambda taken: encoding(taken, form)))
@@ -73,30 +73,30 @@ async def picture_of(received: Received, form: Form) -> Picture:
 
 
 def encoding(received: Received, form: Form) -> asyncio.Future[Picture | Exception]:
-    """Begin to encode an image; the future is shared, so it returns an error instead of raising."""
+    """Start to encode an image; the future is shared, so it returns an error instead of raising."""
     loop = asyncio.get_running_loop()
     return loop.run_in_executor(None, encoded, received.message, form)
 
 
 def encoded(message: Image | CompressedImage, form: Form) -> Picture | Exception:
-    """Return the picture of an image, or why there is none."""
+    """Return the picture of an image, or the reason why there is none."""
     try:
         if isinstance(message, CompressedImage):
-            if "compressedDepth" not in message.format:  # a head before its file, and 16 bits
+            if "compressedDepth" not in message.format:  # a header before its file, and 16 bits
                 picture = passed(message)
                 as_it_is = (Form(), Form(media_type=picture.media_type))
                 if form in as_it_is:
                     return picture
             message = image.decompress(message)
         if not (message.width and message.height):
-            raise MessageError("sensor_msgs/msg/Image", "there are no pixels in it")
+            raise MessageError("sensor_msgs/msg/Image", "it has no pixels")
         return written(eight_bits(message), form)
     except (ValueError, ModuleNotFoundError) as error:
         return error
 
 
 def written(message: Image, form: Form) -> Picture:
-    """Return an image of eight bits as a file."""
+    """Return an eight-bit image as a file."""
     media_type = form.media_type or "image/jpeg"
     if media_type == "image/jpeg" and message.encoding == "rgba8":  # JPEG has no alpha channel
         message = image.from_numpy(image.to_numpy(message, "rgb8"), "rgb8")
@@ -109,15 +109,14 @@ def written(message: Image, form: Form) -> Picture:
 
 
 def passed(message: CompressedImage) -> Picture:
-    """Return a compressed image as it is."""
+    """Return a compressed image unchanged."""
     beginning = bytes(memoryview(message.data)[:8])
     for magic, media_type in BEGINNINGS.items():
         if beginning.startswith(magic):
             return Picture(media_type, message.data)
     raise MessageError(
         "sensor_msgs/msg/CompressedImage.data",
-        f"no picture that browsers show; its format is given as {message.format!r}; JPEG, PNG and "
-        "WebP fit",
+        f"browsers cannot show its format {message.format!r}; use JPEG, PNG or WebP",
     )
 
 

@@ -1,7 +1,7 @@
 """Writes JSON of large messages in slices, while the event loop runs in between.
 
-JSON of an image of 6 MB takes some 20 ms. A thread is no remedy: what writes JSON holds the GIL, so
-that the loop would wait for it each time that it has read a socket.
+JSON of an image of 6 MB takes some 20 ms. A thread would not help: writing JSON holds the GIL, so
+the loop would wait for it after each socket that it reads.
 """
 
 from __future__ import annotations
@@ -21,24 +21,24 @@ if TYPE_CHECKING:
 __all__ = ["base64_in_turns", "json_in_turns", "pieces_of", "prepare_json"]
 
 OCTETS: Final = frozenset({"uint8", "char"})
-"""Kinds of numbers whose arrays are Base64 text in JSON."""
+"""Types of numbers whose arrays are Base64 text in JSON."""
 
 HOLE: Final = b"\0"
-"""A character that never occurs in JSON, as control characters are escaped."""
+"""A character that never occurs in JSON, where control characters are escaped."""
 
 SLICE_BYTES: Final = 192 << 10
-"""Bytes that are written between two turns of the loop, in a quarter of a millisecond;
-divisible by three, as the pieces of base64 text are joined."""
+"""Bytes written between two loop iterations, in a quarter of a millisecond; divisible by three, so
+that the pieces of base64 text can be joined."""
 
 SLICE_ITEMS: Final = 4096
-"""Numbers or messages of an array that are written between two turns."""
+"""Numbers or messages of an array written between two loop iterations."""
 
 
 async def prepare_json(received: Received) -> None:
     """Write the JSON of a large message, for `Received.once` with the key ``json``.
 
     Raises:
-        DecodeError: the bytes are no message of its type.
+        DecodeError: the bytes are not a message of its type.
     """
     if not received.has("json"):
         data = b"".join(await pieces_of(received))
@@ -46,10 +46,10 @@ async def prepare_json(received: Received) -> None:
 
 
 async def pieces_of(received: Received) -> list[bytes]:
-    """Return the JSON of a large message in pieces, which are written once for all.
+    """Return the JSON of a large message in pieces, written once for all clients.
 
     Raises:
-        DecodeError: the bytes are no message of its type.
+        DecodeError: the bytes are not a message of its type.
     """
     if not received.has("json in pieces"):
         pieces = await json_in_turns(received.message)
@@ -58,7 +58,7 @@ async def pieces_of(received: Received) -> list[bytes]:
 
 
 async def json_in_turns(message: Message) -> list[bytes]:
-    """Return the JSON of a valid message in pieces, written while the event loop turns."""
+    """Return the JSON of a valid message in pieces, yielding to the event loop between them."""
     large = Large()
     values = await large.leave_out(message)
     around = ENCODER.encode(values).split(HOLE)
@@ -79,7 +79,7 @@ class Large:
         self.values: list[list[bytes]] = []
 
     async def leave_out(self, message: Message) -> dict[str, object]:
-        """Return a message as a dict, with holes in the places of what is large."""
+        """Return a message as a dict, with placeholders for the large values."""
         return {
             field.name: await self._value(field.type, getattr(message, field.name))
             for field in fields(type(message))
@@ -109,7 +109,7 @@ async def base64_in_turns(data: memoryview) -> list[bytes]:
 
 
 async def items_in_turns(type_: FieldType, values: Any) -> list[bytes]:
-    """Return the items of an array in JSON, with commas between them."""
+    """Return the items of an array in JSON, separated by commas."""
     parts = []
     for at in range(0, len(values), SLICE_ITEMS):
         part = ENCODER.encode(numbered_value(type_, values[at : at + SLICE_ITEMS]))

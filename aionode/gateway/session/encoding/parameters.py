@@ -17,28 +17,28 @@ HINTS: Final = {
     "float64": ParameterType.DOUBLE,
     "float64_array": ParameterType.DOUBLE_ARRAY,
 }
-"""The types that a client can name beside a value, as Foxglove's do."""
+"""The types that a client can name beside a value, as Foxglove's clients do."""
 
 
 def depends_on_type(value: Any) -> bool:
-    """Return whether a value means something else by the type that the parameter has."""
+    """Return whether the meaning of a value depends on the type of the parameter."""
     return value == [] or any(
         type(item) is int for item in (value if isinstance(value, list) else [value])
     )
 
 
 def parameter_of(name: str, value: Any, now: ParameterType, hint: str | None = None) -> Parameter:
-    """Return the parameter that a client has given.
+    """Return the parameter that a client has specified.
 
     Args:
-        name: Its name at its node.
+        name: Its name within its node.
         value: The value in JSON; None undeclares the parameter.
-        now: The type that it has: 2 is a double if the parameter is one, and so is each number of a
+        now: Its current type: 2 becomes a double if the parameter is one, as does each number of a
             list that mixes 3.5 and 4.
-        hint: The type that the client names, one of `HINTS`; that of bytes comes in Base64.
+        hint: The type named by the client, one of `HINTS`; bytes are given in Base64.
 
     Raises:
-        MessageError: parameters have no such value (a ValueError).
+        MessageError: parameters cannot have such a value (a ValueError).
     """
     check_items(value, name)
     type_ = HINTS.get(hint or "", now)
@@ -56,7 +56,7 @@ def parameter_of(name: str, value: Any, now: ParameterType, hint: str | None = N
 
 
 def as_real(value: Any, type_: ParameterType) -> Any:
-    """Return whole numbers as doubles where the parameter has them, or the list mixes both."""
+    """Return whole numbers as doubles if the parameter has doubles, or the list mixes both."""
     if isinstance(value, list):
         is_mixed = any(isinstance(item, float) for item in value)
         if is_mixed or type_ is ParameterType.DOUBLE_ARRAY:

@@ -1,8 +1,8 @@
 """Messages in the forms of rosbridge: JSON in both directions, and CBOR for subscribers.
 
-JSON has bytes as base64 text. Subscribers get null for NaN and the infinities, but no client may
-send it for a number: a page that computes NaN writes null without noticing. CBOR has sequences of
-numbers as typed arrays (RFC 8746, little endian), as rosbridge has chosen them: arrays of a fixed
+JSON contains bytes as base64 text. Subscribers get null for NaN and infinities, but no client may
+send null for a number: a page that computes NaN writes null without noticing. CBOR contains
+sequences of numbers as typed arrays (RFC 8746, little endian), as in rosbridge; arrays of a fixed
 size are plain lists.
 """
 
@@ -54,7 +54,7 @@ def json_of(message: Message) -> bytes:
 
 
 def json_value(value: Any) -> object:
-    """Return the JSON of an array of numpy: base64 text for bytes, else a list."""
+    """Return the JSON of a numpy array: base64 text for bytes, otherwise a list."""
     if value.dtype.kind == "u" and value.itemsize == 1:
         return base64.b64encode(value.tobytes()).decode()
     return value.tolist()
@@ -65,7 +65,7 @@ ENCODER: Final = msgspec.json.Encoder(enc_hook=json_value)
 
 @cache
 def holds_byte(cls: type[Message]) -> bool:
-    """Return whether messages of a class contain a `byte`, which JSON has as a number."""
+    """Return whether messages of a class contain a `byte`, which is a number in JSON."""
     types = [field.type for field in fields(cls)]
     return any(
         type_.kind == "byte" or (type_.nested is not None and holds_byte(type_.nested))
@@ -91,7 +91,7 @@ def numbered_value(type_: FieldType, value: Any) -> object:
 
 
 def cbor_values(message: Message) -> dict[str, object]:
-    """Return a valid message as a dict that `cbor2.dumps` encodes."""
+    """Return a valid message as a dict that `cbor2.dumps` can encode."""
     return {
         field.name: cbor_value(field.type, getattr(message, field.name))
         for field in fields(type(message))
@@ -99,7 +99,7 @@ def cbor_values(message: Message) -> dict[str, object]:
 
 
 def cbor_value(type_: FieldType, value: Any) -> object:
-    """Return the value of a field for `cbor2.dumps`."""
+    """Return the value of a field in a form that `cbor2.dumps` can encode."""
     if type_.container == "single":
         if type_.nested is not None:
             return cbor_values(value)
@@ -122,16 +122,16 @@ def cbor_value(type_: FieldType, value: Any) -> object:
 
 
 def from_json(cls: type[MessageT], values: object, now_ns: int) -> MessageT:
-    """Return the message that a client of rosbridge describes.
+    """Return the message described by a client of rosbridge.
 
     Bytes are base64 text or a list of numbers, and a time may be ``"now"`` or have ``secs`` and
-    ``nsecs``. A list has the values of the fields in their order. Each header that comes without a
-    stamp is stamped with the present time, at any depth, as rosbridge does.
+    ``nsecs``. A list contains the values of the fields in order. Each header without a stamp is
+    stamped with the current time, at any depth, as in rosbridge.
 
     Args:
         cls: The class of the message.
         values: Decoded JSON.
-        now_ns: The present time of the node's clock, in nanoseconds.
+        now_ns: The current time of the node's clock, in nanoseconds.
 
     Raises:
         MessageError: a value does not fit its field, or a field does not exist.
@@ -146,9 +146,9 @@ def stamp(time_ns: int) -> dict[str, int]:
 
 
 def reworded(cls: type[Message], values: object, now_ns: int, path: str) -> object:
-    """Return a client's values for a message in the forms that `from_builtins` accepts.
+    """Convert a client's values for a message to the forms that `from_builtins` accepts.
 
-    Unknown fields and wrong values are left as they are, for the errors of `from_builtins`.
+    Unknown fields and invalid values are left unchanged, for `from_builtins` to report.
     """
     types = {field.name: field.type for field in fields(cls)}
     if isinstance(values, list):
@@ -171,14 +171,14 @@ def reworded(cls: type[Message], values: object, now_ns: int, path: str) -> obje
 
 
 def by_position(names: list[str], values: list[object], path: str) -> dict[str, object]:
-    """Return a list of values as a dict from the names of the first fields."""
+    """Convert a list of values to a dict with the names of the first fields as keys."""
     if len(values) > len(names):
-        raise MessageError(path, f"{len(values)} values in a list, has {len(names)} fields")
+        raise MessageError(path, f"{len(values)} values in a list for {len(names)} fields")
     return dict(zip(names, values, strict=False))
 
 
 def reworded_value(type_: FieldType, value: object, now_ns: int, path: str) -> object:
-    """Return a client's value for one field."""
+    """Convert a client's value for one field."""
     if type_.nested is not None:
         if type_.container == "single":
             return reworded(type_.nested, value, now_ns, path)
@@ -193,11 +193,13 @@ def reworded_value(type_: FieldType, value: object, now_ns: int, path: str) -> o
 
 
 def bytes_of_text(type_: FieldType, text: str, path: str) -> object:
-    """Return the bytes of base64 text, if the field is one of bytes."""
+    """Decode base64 text, if the field contains bytes."""
     if type_.kind not in {"uint8", "char", "byte"}:
         return text
     try:
         data = base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError) as error:
-        raise MessageError(path, f"not base64 text: {error}; a list of numbers fits, too") from None
+        raise MessageError(
+            path, f"not base64 text: {error}; a list of numbers is also accepted"
+        ) from None
     return memoryview(data) if type_.form == "ndarray" else data
