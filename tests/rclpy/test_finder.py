@@ -333,33 +333,6 @@ def test_aionode_itself_imports_none_of_this() -> None:
 
 @pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize(
-    ("module", "names"),
-    [
-        ("rclpy.node", ("Callable", "Optional", "Union")),
-        ("rclpy.executors", ("Set", "TYPE_CHECKING", "time")),
-        ("rclpy.task", ("Callable", "Optional")),
-        ("rclpy.exceptions", ("Optional", "Union")),
-        ("message_filters", ("Duration", "rclpy")),
-        ("ament_index_python.packages", ("get_resource", "os", "pathlib")),
-        ("tf2_ros", ("TransformStamped", "Node", "Duration", "Time", "TFMessage", "Any")),
-        ("tf2_ros.buffer", ("TransformStamped", "Future", "FrameGraphSrvRequest", "tf2")),
-        ("tf2_ros.transform_listener", ("Buffer", "Node")),
-        ("tf2_geometry_msgs", ("PoseStamped", "PointStamped")),
-        ("tf2_sensor_msgs", ("PointCloud2", "read_points")),
-    ],
-)
-def test_modules_have_the_names_that_they_import_in_ros(
-    module: str, names: tuple[str, ...]
-) -> None:
-    """Whole robots take messages and types for annotations from there."""
-    found = importlib.import_module(module)
-
-    assert [name for name in names if not hasattr(found, name)] == []
-    assert not hasattr(found, "no_such_name")
-
-
-@pytest.mark.usefixtures("installed")
-@pytest.mark.parametrize(
     ("module", "name"), [("rclpy.executors", "Lock"), ("rclpy.node", "time"), ("tf2_ros", "sleep")]
 )
 def test_what_modules_import_of_python_itself_is_not_theirs(module: str, name: str) -> None:

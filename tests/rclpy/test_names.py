@@ -1,6 +1,7 @@
 """Every public name that a module or class of rclpy 9.1.2 has is here, but those listed.
 
-``names.json`` has the names; `list_names.py` prints them. With the path of an interpreter that has
+``names.json`` has the names; `list_names.py` prints them, and ``imports.txt`` has those that its
+modules import only for themselves. With the path of an interpreter that has
 rclpy in ``RCLPY_PYTHON`` it is asked again, as in test_differential.py.
 """
 
@@ -59,8 +60,19 @@ rclpy.type_support.SendGoalServiceResponse
 """
 """Names for annotations that no public program was seen to import."""
 
+
+def imports() -> Iterator[str]:
+    """Yield the names that modules of rclpy only import, and no program was seen to take there."""
+    module = ""
+    for word in (HERE / "imports.txt").read_text(encoding="utf-8").split():
+        if word.endswith(":"):
+            module = word[:-1]
+        else:
+            yield f"{module}.{word}"
+
+
 LACKS = {
-    **dict.fromkeys(ANNOTATIONS.split(), "no program was seen to import it"),
+    **dict.fromkeys((*ANNOTATIONS.split(), *imports()), "no program was seen to import it"),
     "rclpy.context.g_logging_configure_lock": "aionode configures logging without a lock",
     "rclpy.context.g_logging_ref_count": "aionode does not count contexts that log",
     "rclpy.impl.implementation_singleton.import_c_library": "there is no compiled library",
@@ -105,10 +117,32 @@ SHARED = {
     "aionode.logging": "one class for both APIs",
     "aionode.parameter": "one class for both APIs",
     "aionode.qos": "one class for both APIs",
-    "rclpy._type_names": "a name for annotations",
     "typing": "a name for annotations",
 }
 """The modules whose classes keep their `__module__`, and why."""
+
+SEEN = {
+    "ament_index_python.packages": "get_resource os pathlib",
+    "rclpy.action.client": "CancelGoal",
+    "rclpy.client": "SrvType SrvTypeRequest SrvTypeResponse",
+    "rclpy.executors": "Future time",
+    "rclpy.node": "Any Callable Context List MsgType Optional ParameterDescriptor "
+    "ParameterNotDeclaredException ParameterType ParameterValue SetParametersResult SrvType "
+    "SrvTypeRequest SrvTypeResponse Union",
+    "rclpy.parameter": "ParameterMsg ParameterType ParameterValue",
+    "rclpy.publisher": "MsgType",
+    "rclpy.qos": "Duration",
+    "rclpy.service": "SrvType SrvTypeRequest SrvTypeResponse",
+    "rclpy.subscription": "MsgType",
+    "rclpy.timer": "Clock",
+    "rclpy.type_support": "FeedbackMessage GetResultServiceResponse",
+    "tf2_geometry_msgs": "PointStamped PoseStamped TransformStamped",
+    "tf2_geometry_msgs.tf2_geometry_msgs": "PoseStamped",
+    "tf2_ros": "Duration PointStamped PoseStamped TFMessage Time TransformStamped",
+    "tf2_ros.buffer_interface": "TransformStamped",
+}
+"""Names that public programs take from modules that only import them; docs/decisions/rclpy.md says
+where they were seen."""
 
 
 def imported(module: str) -> Any:
@@ -127,7 +161,7 @@ def lacking(owner: Any, path: str, names: list[str]) -> Iterator[str]:
 
 @pytest.mark.usefixtures("installed")
 def test_modules_have_the_names_of_rclpy() -> None:
-    """Programs take names from where rclpy has them, not from where it defines them."""
+    """Programs take some names from where rclpy imports them, not from where it defines them."""
     found = {
         name
         for module, names in EXPECTED["modules"].items()
@@ -187,7 +221,7 @@ def test_a_name_from_elsewhere_is_the_same_object() -> None:
     node, client = imported("rclpy.node"), imported("rclpy.client")
 
     assert node.ParameterDescriptor is message_class("rcl_interfaces/msg/ParameterDescriptor")
-    assert node.ParameterMsg is message_class("rcl_interfaces/msg/Parameter")
+    assert imported("rclpy.parameter").ParameterMsg is message_class("rcl_interfaces/msg/Parameter")
     assert node.Context is imported("rclpy.context").Context
     assert client.SrvTypeRequest is node.SrvTypeRequest
     assert imported("rclpy.parameter").ParameterType.PARAMETER_STRING_ARRAY == 9
@@ -274,3 +308,13 @@ def test_a_module_of_rclpy_is_an_attribute_whatever_was_imported_first(first: st
     )
 
     assert (done.stdout, done.stderr) == ("Node rclpy.executors False\n", "")
+
+
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize("module", SEEN)
+def test_names_are_found_where_programs_take_them_from(module: str) -> None:
+    """Completion in an editor writes the module that an example happened to import."""
+    found = imported(module)
+
+    assert [name for name in SEEN[module].split() if not hasattr(found, name)] == []
+    assert not hasattr(found, "no_such_name")

@@ -14,7 +14,6 @@ from aionode.message_filters import (
     SimpleFilter,
     Synchronizer,
 )
-from rclpy._reexports import add_names
 from rclpy.clock import ROSClock
 from rclpy.time import Time
 
@@ -113,6 +112,3 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.allow_headerless = allow_headerless
         matcher = ApproximateMatcher(len(fs), queue_size, slop)
         self._TimeSynchronizer__connect(fs, matcher, queue_size, allow_headerless)
-
-
-add_names(__name__)

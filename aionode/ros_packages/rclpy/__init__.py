@@ -7,6 +7,8 @@ else, and nothing of asyncio is seen. `executors.py` calls every callback.
 
 from __future__ import annotations
 
+from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy import context as context
@@ -14,7 +16,6 @@ from rclpy import parameter as parameter
 from rclpy import signals as signals
 from rclpy import task as task
 from rclpy import utilities as utilities
-from rclpy._reexports import add_names
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
@@ -31,6 +32,8 @@ from rclpy.utilities import (
 )
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from rclpy.executors import Executor
     from rclpy.node import Node
 
@@ -225,4 +228,11 @@ def spin_until_future_complete(
             executor.remove_node(node)
 
 
-add_names(__name__)
+def __getattr__(name: str) -> ModuleType:
+    """Import a module of rclpy that is named without an import of it.
+
+    Importing one module of ROS's rclpy imports most others, so programs name them all.
+    """
+    if name.startswith("_") or find_spec(f"{__name__}.{name}") is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return import_module(f"{__name__}.{name}")

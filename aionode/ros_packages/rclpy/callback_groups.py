@@ -6,8 +6,6 @@ import threading
 import weakref
 from typing import Any
 
-from rclpy._reexports import add_names
-
 __all__ = [
     "CallbackGroup",
     "Entity",
@@ -92,6 +90,3 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         """End the call."""
         with self._lock:
             self._active_entity = None
-
-
-add_names(__name__)

@@ -9,15 +9,21 @@ from rclpy._entities import ServiceEntity, in_use, wait_until
 from rclpy._impl.destroyable import Wakeup
 from rclpy._impl.services import ClientHandle
 from rclpy._impl.uninterrupted import refuse_to_wait
-from rclpy._reexports import add_names
 from rclpy.task import Future
+from rclpy.type_support import SrvType, SrvTypeRequest, SrvTypeResponse
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
     from rclpy.qos import QoSProfile
 
-__all__ = ["BaseClient", "Client"]
+__all__ = [
+    "BaseClient",
+    "Client",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
+]
 
 RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
@@ -149,6 +155,3 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
 
 BaseClient = Client
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

@@ -15,7 +15,6 @@ from aionode.clock import (
 )
 from rclpy._impl.destroyable import Wakeup
 from rclpy._impl.timers import ClockHandle
-from rclpy._reexports import add_names
 from rclpy.duration import Duration
 from rclpy.exceptions import NotInitializedException
 from rclpy.time import Time
@@ -138,6 +137,3 @@ class ROSClock(Clock):
 
 BaseClock = Clock
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

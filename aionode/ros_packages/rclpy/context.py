@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 from aionode import logging as ros_logging
 from rclpy._impl.context import ContextHandle, living_contexts
-from rclpy._reexports import add_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -184,6 +183,3 @@ class Context:
 
     def __exit__(self, *_: object) -> None:
         self.try_shutdown()
-
-
-add_names(__name__)

@@ -7,7 +7,6 @@ from typing import Any
 from aionode import clock as core
 from rclpy._impl import messages as msg
 from rclpy._impl.typesupport import expect_message
-from rclpy._reexports import add_names
 
 __all__ = ["Duration", "Infinite"]
 
@@ -67,5 +66,3 @@ def of_core(duration: Any) -> Any:
 
 
 Infinite = Duration(nanoseconds=core.CONST_INFINITE_NS)
-
-add_names(__name__)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rclpy._reexports import add_names
 from rclpy.qos import QoSProfile
 from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum, from_dict
 from rclpy.type_hash import Checked, TypeHash
@@ -122,6 +121,3 @@ def lines_of(profile: QoSProfile, indent: str) -> list[str]:
         f"{indent}Liveliness: {profile.liveliness.name}",
         f"{indent}Liveliness lease duration: {profile.liveliness_lease_duration}",
     ]
-
-
-add_names(__name__)

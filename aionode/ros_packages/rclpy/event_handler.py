@@ -26,7 +26,6 @@ from rclpy._impl.events import (
     PublisherEventType,
     SubscriptionEventType,
 )
-from rclpy._reexports import add_names
 from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
@@ -195,6 +194,3 @@ class PublisherEventCallbacks(events.PublisherEventCallbacks):
     ) -> list[EventHandler]:
         """Return the handlers of a publisher."""
         return create_handlers(callback_group, publisher, self, PUBLISHER_WATCHES)
-
-
-add_names(__name__)

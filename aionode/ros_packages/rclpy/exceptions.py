@@ -18,7 +18,6 @@ from aionode.errors import (
     ParameterUninitializedException,
 )
 from rclpy._impl.errors import InvalidHandle, TimerCancelledError
-from rclpy._reexports import add_names
 
 __all__ = [
     "InvalidHandle",
@@ -67,6 +66,3 @@ class ROSInterruptException(Exception):  # noqa: N818  # rclpy's name
 
     def __init__(self) -> None:
         super().__init__("rclpy.shutdown() has been called")
-
-
-add_names(__name__)

@@ -10,6 +10,7 @@ import inspect
 import itertools
 import os
 import threading
+import time  # noqa: TID251  # for programs that take it from here
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +19,6 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from aionode.clock import MachineTime
 from rclpy._impl.destroyable import Wakeup
-from rclpy._reexports import add_names
 from rclpy._taking import (
     Ready,
     Take,
@@ -46,6 +46,7 @@ __all__ = [
     "TimeoutException",
     "TimeoutObject",
     "await_or_execute",
+    "time",
 ]
 
 steady_ns = MachineTime().steady_ns
@@ -649,6 +650,3 @@ class MultiThreadedExecutor(Executor):
         success = super().shutdown(timeout_sec)
         self._executor.shutdown(wait=wait_for_threads)
         return success
-
-
-add_names(__name__)

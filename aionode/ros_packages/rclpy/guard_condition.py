@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from rclpy._entities import HandleOwner, in_use
 from rclpy._impl.timers import GuardConditionHandle
-from rclpy._reexports import add_names
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
@@ -41,6 +40,3 @@ class GuardCondition(HandleOwner[GuardConditionHandle]):
         self._executor_event = False  # whether an executor has a task for it that has not begun
 
     trigger = in_use(GuardConditionHandle.trigger_guard_condition)
-
-
-add_names(__name__)

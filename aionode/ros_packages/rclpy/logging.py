@@ -13,7 +13,6 @@ from aionode.logging import (
     set_logger_level,
     shutdown,
 )
-from rclpy._reexports import add_names
 
 __all__ = [
     "LoggingSeverity",
@@ -30,5 +29,3 @@ __all__ = [
 ]
 
 _root_logger = RcutilsLogger()  # rclpy's; tests of users reach for it
-
-add_names(__name__)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from aionode.engine.log_levels import LevelAnswers
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.parameter_service import unless_refused
 
 if TYPE_CHECKING:
@@ -34,6 +33,3 @@ class LoggingService:
                 f"{name}/{service_name}",
                 unless_refused(callback, node.get_logger(), service_name),
             )
-
-
-add_names(__name__)

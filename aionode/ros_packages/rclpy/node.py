@@ -3,7 +3,32 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Callable
+from typing import (  # noqa: UP035  # programs take them from here
+    TYPE_CHECKING,
+    Any,
+    Dict,
+    List,
+    Optional,
+    Self,
+    Sequence,
+    Tuple,
+    Type,
+    TypeVar,
+    Union,
+)
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ListParametersResult,
+    ParameterDescriptor,
+    ParameterEvent,
+    ParameterType,
+    ParameterValue,
+    SetParametersResult,
+)
+from rcl_interfaces.msg import Parameter as ParameterMsg
 
 from aionode import qos as core
 from rclpy._impl import messages as msg
@@ -13,7 +38,6 @@ from rclpy._impl.services import ClientHandle, ServiceHandle
 from rclpy._impl.topics import PublisherHandle, SubscriptionHandle
 from rclpy._node_graph import NodeGraph
 from rclpy._node_parameters import NodeParameters, ParameterEvents
-from rclpy._reexports import add_names
 from rclpy.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -22,12 +46,23 @@ from rclpy.callback_groups import (
 from rclpy.client import Client
 from rclpy.clock import Clock, ROSClock
 from rclpy.constants import S_TO_NS
+from rclpy.context import Context
 from rclpy.event_handler import (
     DefaultHandler,
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
 )
-from rclpy.exceptions import InvalidHandle, NotInitializedException
+from rclpy.exceptions import (
+    InvalidHandle,
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    InvalidTopicNameException,
+    NotInitializedException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
 from rclpy.executors import Executor
 from rclpy.guard_condition import GuardCondition
 from rclpy.logging import get_logger
@@ -48,19 +83,67 @@ from rclpy.subscription import Subscription
 from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.type_description_service import TypeDescriptionService
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.type_support import (
+    MsgType,
+    SrvType,
+    SrvTypeRequest,
+    SrvTypeResponse,
+    check_is_valid_msg_type,
+    check_is_valid_srv_type,
+)
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from aionode.logging import RcutilsLogger
     from rclpy._impl.destroyable import Arrivals
-    from rclpy.context import Context
     from rclpy.subscription_content_filter_options import ContentFilterOptions
     from rclpy.waitable import Waitable
 
-__all__ = ["HIDDEN_NODE_PREFIX", "BaseNode", "Node", "NodeNameNonExistentError"]
+__all__ = [
+    "HIDDEN_NODE_PREFIX",
+    "Any",
+    "BaseNode",
+    "Callable",
+    "Context",
+    "Dict",
+    "FloatingPointRange",
+    "IntegerRange",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "InvalidTopicNameException",
+    "List",
+    "ListParametersResult",
+    "MsgType",
+    "MutuallyExclusiveCallbackGroup",
+    "Node",
+    "NodeNameNonExistentError",
+    "Optional",
+    "Parameter",
+    "ParameterAlreadyDeclaredException",
+    "ParameterDescriptor",
+    "ParameterEvent",
+    "ParameterImmutableException",
+    "ParameterMsg",
+    "ParameterNotDeclaredException",
+    "ParameterType",
+    "ParameterUninitializedException",
+    "ParameterValue",
+    "Publisher",
+    "QoSProfile",
+    "ReentrantCallbackGroup",
+    "Sequence",
+    "SetParametersResult",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
+    "Timer",
+    "Tuple",
+    "Type",
+    "TypeVar",
+    "Union",
+]
 
 HIDDEN_NODE_PREFIX = "_"
 
@@ -590,6 +673,3 @@ def as_profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
 
 BaseNode = Node
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

@@ -6,18 +6,23 @@ import array
 from enum import IntEnum
 from typing import Any, Generic, TypeVar
 
+from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import ParameterType, ParameterValue
+
 from aionode import parameter as core
 from aionode._process.bounded_files import read_file
 from aionode._process.bounded_yaml import loaded_yaml
 from aionode.parameter import PARAMETER_SEPARATOR_STRING, parameter_value_to_python
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rosidl_generator_py import from_aionode
 
 __all__ = [
     "PARAMETER_SEPARATOR_STRING",
     "AllowableParameterValue",
     "Parameter",
+    "ParameterMsg",
+    "ParameterType",
+    "ParameterValue",
     "get_parameter_value",
     "parameter_dict_from_yaml_file",
     "parameter_value_to_python",
@@ -207,6 +212,3 @@ def messages_of(values: dict[str, Any], namespace: str = "") -> dict[str, Any]:
             message.value = get_parameter_value(str(value))
             parameters[full_name] = message
     return parameters
-
-
-add_names(__name__)

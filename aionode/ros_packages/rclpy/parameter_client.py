@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy._entities import wait_until
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from rclpy.qos import (
     QoSProfile,
@@ -190,6 +189,3 @@ def as_messages(parameters: Sequence[Any]) -> list[Any]:
         parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter
         for parameter in parameters
     ]
-
-
-add_names(__name__)

@@ -8,7 +8,6 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 
 if TYPE_CHECKING:
@@ -205,6 +204,3 @@ class ParameterEventHandler:
         if node_path.startswith("/"):
             return node_path
         return f"{self.node.get_namespace().rstrip('/')}/{node_path}"
-
-
-add_names(__name__)

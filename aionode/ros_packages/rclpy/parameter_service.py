@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from aionode.errors import RequestRefusedError
 from aionode.parameter import parameter_services
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameters
@@ -55,6 +54,3 @@ def unless_refused(
             return response
 
     return answer
-
-
-add_names(__name__)

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rclpy._entities import TopicEntity, in_use
 from rclpy._impl.topics import PublisherHandle
-from rclpy._reexports import add_names
 from rclpy.duration import Duration
+from rclpy.type_support import MsgType
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import EventHandler, PublisherEventCallbacks
     from rclpy.qos import QoSProfile
 
-__all__ = ["BasePublisher", "Publisher"]
+__all__ = ["BasePublisher", "MsgType", "Publisher"]
 
 MsgT = TypeVar("MsgT")
 
@@ -79,6 +79,3 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
 
 BasePublisher = Publisher
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

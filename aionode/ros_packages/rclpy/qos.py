@@ -23,11 +23,12 @@ from aionode.qos import (
     qos_policy_name_from_kind,
 )
 from rclpy._impl.qos import rmw_qos_profile_t
-from rclpy._reexports import add_names
+from rclpy.duration import Duration
 
 __all__ = [
     "DeadlineBestAvailable",
     "DurabilityPolicy",
+    "Duration",
     "HistoryPolicy",
     "InvalidQoSProfileException",
     "LivelinessLeaseDurationeBestAvailable",
@@ -177,5 +178,3 @@ for _policy, _names in FORMER_NAMES.items():
 
 # rclpy's spelling
 LivelinessLeaseDurationeBestAvailable = core.LivelinessLeaseDurationBestAvailable
-
-add_names(__name__)

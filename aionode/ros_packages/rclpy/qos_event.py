@@ -5,11 +5,8 @@ from __future__ import annotations
 import warnings
 
 from rclpy import event_handler
-from rclpy._reexports import add_names
 from rclpy.event_handler import *  # noqa: F403  # the same names
 
 __all__ = event_handler.__all__
 
 warnings.warn("importing 'qos_event' is deprecated; import 'event_handler' instead", stacklevel=2)
-
-add_names(__name__)

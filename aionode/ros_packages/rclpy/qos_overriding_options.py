@@ -8,7 +8,6 @@ from aionode.clock import Duration
 from aionode.errors import InvalidQosOverridesError
 from aionode.parameter import QoSOverridingOptions, declare_qos_overrides
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSPolicyKind, as_own
 from rclpy.subscription import Subscription
@@ -51,6 +50,3 @@ def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | i
         return value.nanoseconds
     short_key: str | int | bool = getattr(value, "short_key", value)
     return short_key
-
-
-add_names(__name__)

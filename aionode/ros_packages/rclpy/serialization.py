@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy._impl.typesupport import message_support
-from rclpy._reexports import add_names
 from rclpy.type_support import check_for_type_support
 
 __all__ = ["deserialize_message", "serialize_message"]
@@ -31,6 +30,3 @@ def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
     """
     check_for_type_support(message_type)
     return message_support(message_type).decode(serialized_message)
-
-
-add_names(__name__)

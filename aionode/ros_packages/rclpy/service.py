@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rclpy._entities import ServiceEntity, in_use
 from rclpy._impl.services import ServiceHandle, rmw_request_id_t, rmw_service_info_t
-from rclpy._reexports import add_names
+from rclpy.type_support import SrvType, SrvTypeRequest, SrvTypeResponse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,7 +14,13 @@ if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.qos import QoSProfile
 
-__all__ = ["BaseService", "Service"]
+__all__ = [
+    "BaseService",
+    "Service",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
+]
 
 RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
@@ -76,6 +82,3 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
 
 BaseService = Service
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

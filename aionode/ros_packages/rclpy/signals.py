@@ -13,7 +13,6 @@ from aionode.clock import MachineTime
 from rclpy._impl.context import living_contexts
 from rclpy._impl.timers import GuardConditionHandle
 from rclpy._impl.uninterrupted import own_handlers, postpone
-from rclpy._reexports import add_names
 from rclpy.guard_condition import GuardCondition
 
 if TYPE_CHECKING:
@@ -167,6 +166,3 @@ class SignalHandlerGuardCondition(GuardCondition):
         """Destroy it."""
         guards.pop(id(self.handle), None)
         super().destroy()
-
-
-add_names(__name__)

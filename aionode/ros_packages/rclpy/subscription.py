@@ -10,15 +10,21 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 from rclpy._entities import TopicEntity, in_use
 from rclpy._impl.errors import RCLError
 from rclpy._impl.topics import SubscriptionHandle
-from rclpy._reexports import add_names
 from rclpy.subscription_content_filter_options import ContentFilterOptions
+from rclpy.type_support import MsgType
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
     from rclpy.qos import QoSProfile
 
-__all__ = ["BaseSubscription", "MessageInfo", "RCLError", "Subscription"]
+__all__ = [
+    "BaseSubscription",
+    "MessageInfo",
+    "MsgType",
+    "RCLError",
+    "Subscription",
+]
 
 MsgT = TypeVar("MsgT")
 
@@ -129,6 +135,3 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
 
 BaseSubscription = Subscription
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

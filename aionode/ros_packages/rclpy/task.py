@@ -10,8 +10,6 @@ import weakref
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rclpy._reexports import add_names
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Generator
 
@@ -271,6 +269,3 @@ class Task(Future[T]):
         if self._pending() and inspect.iscoroutine(self._handler):
             self._handler.close()
         super().cancel()
-
-
-add_names(__name__)

@@ -9,7 +9,6 @@ from aionode import clock as core
 from aionode.clock import ClockType
 from rclpy._impl import messages as msg
 from rclpy._impl.typesupport import expect_message
-from rclpy._reexports import add_names
 from rclpy.constants import S_TO_NS
 from rclpy.duration import Duration, of_core
 
@@ -68,6 +67,3 @@ def own(value: Any) -> Any:
     if isinstance(value, core.Time):
         return Time(nanoseconds=value.nanoseconds, clock_type=value.clock_type)
     return of_core(value)
-
-
-add_names(__name__)

@@ -9,7 +9,6 @@ from aionode.clock import ClockType
 from aionode.engine.reports.simulated_time import ClockWatch, why_no_time
 from aionode.graph import EndpointKind
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.clock import ROSClock
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -170,6 +169,3 @@ def watch_clock(subscription: EndpointInfo, context: CoreContext) -> None:
         *(subscription, graph, context.time_base),
         heard=lambda: bool(graph.endpoints(EndpointKind.PUBLISHER, name=subscription.name)),
     ).start()
-
-
-add_names(__name__)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import ClockType
 from rclpy._entities import HandleOwner, in_use
 from rclpy._impl.timers import TimerHandle
-from rclpy._reexports import add_names
+from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
@@ -18,10 +18,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rclpy.callback_groups import CallbackGroup
-    from rclpy.clock import Clock
     from rclpy.context import Context
 
-__all__ = ["BaseTimer", "Rate", "Timer", "TimerInfo"]
+__all__ = [
+    "BaseTimer",
+    "Clock",
+    "Rate",
+    "Timer",
+    "TimerInfo",
+]
 
 
 class TimerInfo:
@@ -186,6 +191,3 @@ class Rate:
 
 BaseTimer = Timer
 """The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
-
-
-add_names(__name__)

@@ -6,7 +6,6 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 from aionode import qos as core
-from rclpy._reexports import add_names
 from rclpy.qos import QoSHistoryPolicy, QoSPresetProfiles, QoSProfile
 from rclpy.type_hash import Checked, TypeHash
 
@@ -117,6 +116,3 @@ class TopicEndpointInfo:
                 f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
             )
         )
-
-
-add_names(__name__)

@@ -6,7 +6,6 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from rclpy._impl import messages as msg
-from rclpy._reexports import add_names
 from rclpy.parameter import Parameter
 from rosidl_generator_py import aionode_class, from_aionode
 
@@ -71,6 +70,3 @@ class TypeDescriptionService:
                 impl: Any = aionode_class(action_type).Impl
                 used += [impl.SendGoalService, impl.GetResultService, impl.FeedbackMessage]
         return describe_type(used, request, response, from_aionode)
-
-
-add_names(__name__)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rclpy._reexports import add_names
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -77,6 +75,3 @@ class TypeHash:
         if self.version <= 0 or len(self.value) != SIZE:
             return "INVALID"
         return f"{PREFIX}{self.version:02}_{self.value.hex()}"
-
-
-add_names(__name__)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from rclpy._impl.typesupport import is_own
-from rclpy._reexports import add_names
 from rclpy.exceptions import NoTypeSupportImportedException
 from rosidl_generator_py import ros_type_name
 
 __all__ = [
     "Action",
+    "FeedbackMessage",
+    "GetResultServiceResponse",
     "Msg",
     "Srv",
     "check_for_type_support",
@@ -30,6 +31,22 @@ ActionT = TypeVar("ActionT")
 GoalT = TypeVar("GoalT")
 ResultT = TypeVar("ResultT")
 FeedbackT = TypeVar("FeedbackT")
+Result_co = TypeVar("Result_co", covariant=True)
+Feedback_co = TypeVar("Feedback_co", covariant=True)
+
+MsgType = TypeVar("MsgType")
+SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
+"""Former names of type variables, which programs import from the modules of nodes and clients."""
+
+
+class GetResultServiceResponse(Protocol[Result_co]):
+    """The response to a request for the result of a goal, in annotations."""
+
+
+class FeedbackMessage(Protocol[Feedback_co]):
+    """The feedback of a goal, in annotations."""
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
@@ -82,6 +99,3 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
             f"The service type provided is not valid ({srv_type}), this might be a message or "
             "action"
         )
-
-
-add_names(__name__)

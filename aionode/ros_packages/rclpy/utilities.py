@@ -7,7 +7,6 @@ import threading
 from typing import TYPE_CHECKING
 
 from aionode import arguments
-from rclpy._reexports import add_names
 from rclpy.constants import S_TO_NS
 from rclpy.context import Context
 
@@ -91,6 +90,3 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * S_TO_NS)
-
-
-add_names(__name__)

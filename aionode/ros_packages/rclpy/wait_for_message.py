@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from rclpy._impl.wait_set import WaitSet
-from rclpy._reexports import add_names
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.utilities import timeout_sec_to_nsec
 
@@ -58,6 +57,3 @@ def wait_for_message(
 
 def ignore(msg: Any) -> None:
     """Do nothing: the message is taken by hand."""
-
-
-add_names(__name__)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
-from rclpy._reexports import add_names
-
 if TYPE_CHECKING:
     from rclpy._impl.wait_set import WaitSet
     from rclpy.callback_groups import CallbackGroup
@@ -115,6 +113,3 @@ class Waitable(Generic[T]):
     def add_to_wait_set(self, wait_set: WaitSet) -> None:
         """Add its handles."""
         raise NotImplementedError("Must be implemented by subclass")
-
-
-add_names(__name__)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from rclpy._reexports import add_names
 from tf2_geometry_msgs.tf2_geometry_msgs import (
+    PointStamped,
+    PoseStamped,
+    TransformStamped,
     do_transform_point,
     do_transform_polygon_stamped,
     do_transform_pose,
@@ -17,6 +19,9 @@ from tf2_geometry_msgs.tf2_geometry_msgs import (
 )
 
 __all__ = [
+    "PointStamped",
+    "PoseStamped",
+    "TransformStamped",
     "do_transform_point",
     "do_transform_polygon_stamped",
     "do_transform_pose",
@@ -28,5 +33,3 @@ __all__ = [
     "to_msg_msg",
     "transform_covariance",
 ]
-
-add_names(__name__)

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from geometry_msgs.msg import PointStamped, PoseStamped, TransformStamped
+
 from aionode.interfaces.geometry_msgs import msg as geometry
 from aionode.tf import do_transform
-from rclpy._reexports import add_names
 from rosidl_generator_py import from_aionode, message_class, to_aionode
 from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
 
 __all__ = [
+    "PointStamped",
+    "PoseStamped",
+    "TransformStamped",
     "do_transform_point",
     "do_transform_polygon_stamped",
     "do_transform_pose",
@@ -83,5 +87,3 @@ for name in STAMPED:
     TransformRegistration().add(kind, transformed)
     ConvertRegistration().add_to_msg(kind, to_msg_msg)
     ConvertRegistration().add_from_msg(kind, from_msg_msg)
-
-add_names(__name__)

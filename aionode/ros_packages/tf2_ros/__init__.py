@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from rclpy._reexports import add_names
+from geometry_msgs.msg import (
+    PointStamped,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+    Vector3Stamped,
+)
+from sensor_msgs.msg import PointCloud2
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+
+from rclpy.duration import Duration
+from rclpy.time import Time
 from tf2_py import (
     BufferCore,
     ConnectivityException,
@@ -34,19 +46,27 @@ __all__ = [
     "BufferInterface",
     "ConnectivityException",
     "ConvertRegistration",
+    "Duration",
     "ExtrapolationException",
+    "Header",
     "InvalidArgumentException",
     "LookupException",
     "NotImplementedException",
+    "PointCloud2",
+    "PointStamped",
+    "PoseStamped",
+    "PoseWithCovarianceStamped",
     "Stamped",
     "StaticTransformBroadcaster",
+    "TFMessage",
+    "Time",
     "TimeoutException",
     "TransformBroadcaster",
     "TransformException",
     "TransformListener",
     "TransformRegistration",
+    "TransformStamped",
     "TypeException",
+    "Vector3Stamped",
     "convert",
 ]
-
-add_names(__name__)

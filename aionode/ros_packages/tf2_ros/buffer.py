@@ -6,11 +6,12 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from geometry_msgs.msg import TransformStamped
+
 from aionode.clock import perf_ns
 from aionode.tf import ExtrapolationException
 from aionode.tf.buffer_core import CACHE_TIME_SEC, time_ns_of
 from aionode.tf.waiters import Waiter, Waiters
-from rclpy._reexports import add_names
 from rclpy.clock import Clock, JumpThreshold
 from rclpy.duration import Duration
 from rclpy.logging import get_logger
@@ -19,7 +20,11 @@ from rosidl_generator_py import service_class
 from tf2_py import BufferCore
 from tf2_ros.buffer_interface import NOW, BufferInterface
 
-__all__ = ["Buffer"]
+__all__ = [
+    "Buffer",
+    "Future",
+    "TransformStamped",
+]
 
 
 class Buffer(BufferCore, BufferInterface):
@@ -191,6 +196,3 @@ class Buffer(BufferCore, BufferInterface):
     def _BufferCore__give_up(self, waiter: Waiter) -> None:
         with self._BufferCore__lock:
             self._BufferCore__waiters.remove(waiter)
-
-
-add_names(__name__)

@@ -8,7 +8,6 @@ from typing import Any
 from aionode.tf import TimeoutException, TransformException
 from aionode.tf.buffer_core import time_ns_of
 from aionode.tf.remote import transform_in
-from rclpy._reexports import add_names
 from rclpy.action.client import ActionClient
 from rclpy.duration import Duration
 from rclpy.time import Time
@@ -143,6 +142,3 @@ def outcome(future: Any, limit_s: float, text: str) -> Any:
 def stamp(time: Any) -> Any:
     """Return a time as a message."""
     return Time(nanoseconds=time_ns_of(time)).to_msg()
-
-
-add_names(__name__)

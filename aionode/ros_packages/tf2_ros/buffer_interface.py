@@ -6,7 +6,8 @@ from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
-from rclpy._reexports import add_names
+from geometry_msgs.msg import TransformStamped
+
 from rclpy.duration import Duration
 from rosidl_generator_py import message_class
 
@@ -16,6 +17,7 @@ __all__ = [
     "NotImplementedException",
     "Stamped",
     "TransformRegistration",
+    "TransformStamped",
     "TypeException",
     "convert",
 ]
@@ -188,6 +190,3 @@ class BufferInterface:
     ) -> Any:
         """Return whether a transform between two times is available."""
         raise NotImplementedException
-
-
-add_names(__name__)

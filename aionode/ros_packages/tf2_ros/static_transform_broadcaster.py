@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from aionode import tf
-from rclpy._reexports import add_names
 from rosidl_generator_py import message_class
 
 __all__ = ["StaticTransformBroadcaster"]
@@ -17,6 +16,3 @@ class StaticTransformBroadcaster(tf.StaticTransformBroadcaster):
     """
 
     _StaticTransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")
-
-
-add_names(__name__)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from aionode import tf
-from rclpy._reexports import add_names
 from rosidl_generator_py import message_class
 
 __all__ = ["TransformBroadcaster"]
@@ -13,6 +12,3 @@ class TransformBroadcaster(tf.TransformBroadcaster):
     """Publishes transforms on /tf, with a node of rclpy."""
 
     _TransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")
-
-
-add_names(__name__)

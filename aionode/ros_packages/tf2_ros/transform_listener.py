@@ -6,7 +6,6 @@ from threading import Thread
 from typing import Any
 
 from aionode.qos import DurabilityPolicy, HistoryPolicy
-from rclpy._reexports import add_names
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
@@ -96,6 +95,3 @@ class TransformListener:
         """Take transforms that hold at any time."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, AUTHORITY)
-
-
-add_names(__name__)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rclpy._reexports import add_names
+from sensor_msgs.msg import PointCloud2
+
 from tf2_sensor_msgs.tf2_sensor_msgs import (
     do_transform_cloud,
     from_msg_msg,
@@ -10,6 +11,10 @@ from tf2_sensor_msgs.tf2_sensor_msgs import (
     transform_points,
 )
 
-__all__ = ["do_transform_cloud", "from_msg_msg", "to_msg_msg", "transform_points"]
-
-add_names(__name__)
+__all__ = [
+    "PointCloud2",
+    "do_transform_cloud",
+    "from_msg_msg",
+    "to_msg_msg",
+    "transform_points",
+]

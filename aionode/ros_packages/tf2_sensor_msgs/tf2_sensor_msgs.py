@@ -8,7 +8,6 @@ import numpy as np
 
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.tf import do_transform, rotation_matrix
-from rclpy._reexports import add_names
 from rosidl_generator_py import from_aionode, message_class, to_aionode
 from tf2_geometry_msgs.tf2_geometry_msgs import from_msg_msg, to_msg_msg
 from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
@@ -37,5 +36,3 @@ kind = message_class("sensor_msgs/msg/PointCloud2")
 TransformRegistration().add(kind, do_transform_cloud)
 ConvertRegistration().add_to_msg(kind, to_msg_msg)
 ConvertRegistration().add_from_msg(kind, from_msg_msg)
-
-add_names(__name__)

@@ -7,11 +7,12 @@ import uuid
 import weakref
 from typing import TYPE_CHECKING, Any, Generic
 
+from action_msgs.srv import CancelGoal
+
 from aionode.engine.rules.goal import GoalStatus
 from rclpy._entities import wait_until
 from rclpy._impl.actions import ActionClientHandle
 from rclpy._impl.destroyable import Wakeup
-from rclpy._reexports import add_names
 from rclpy.action._entity import ActionEntity
 from rclpy.executors import await_or_execute
 from rclpy.qos import (
@@ -30,7 +31,11 @@ if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.node import Node
 
-__all__ = ["ActionClient", "ClientGoalHandle"]
+__all__ = [
+    "ActionClient",
+    "CancelGoal",
+    "ClientGoalHandle",
+]
 
 FEEDBACK_QOS = QoSProfile(depth=10)
 
@@ -342,6 +347,3 @@ def expect_goal_handle(value: object) -> None:
     """Raise TypeError unless `value` is a `ClientGoalHandle`."""
     if not isinstance(value, ClientGoalHandle):
         raise TypeError(f"Expected type ClientGoalHandle but received {type(value)}")
-
-
-add_names(__name__)

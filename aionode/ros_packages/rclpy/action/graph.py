@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.engine.graph_queries import actions_among
-from rclpy._reexports import add_names
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -48,6 +47,3 @@ def get_action_server_names_and_types_by_node(
 def get_action_names_and_types(node: Node) -> NamesAndTypes:
     """Return all actions."""
     return actions_among(node.get_topic_names_and_types())
-
-
-add_names(__name__)

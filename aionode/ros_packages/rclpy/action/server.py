@@ -24,7 +24,6 @@ from aionode.errors import GoalRejected, GoalTransitionError
 from rclpy._impl.actions import ActionServerHandle
 from rclpy._impl.errors import RCLError
 from rclpy._impl.typesupport import message_like
-from rclpy._reexports import add_names
 from rclpy.action._entity import ActionEntity
 from rclpy.executors import await_or_execute
 from rclpy.qos import (
@@ -499,6 +498,3 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             goal_handle.destroy()
             self.remove_future(goal_handle._result)
         super().destroy()
-
-
-add_names(__name__)

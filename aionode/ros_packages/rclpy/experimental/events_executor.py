@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from rclpy._reexports import add_names
 from rclpy.executors import SingleThreadedExecutor
 
 __all__ = ["EventsExecutor"]
@@ -10,6 +9,3 @@ __all__ = ["EventsExecutor"]
 
 class EventsExecutor(SingleThreadedExecutor):
     """Calls callbacks in the thread that spins, as `SingleThreadedExecutor` does."""
-
-
-add_names(__name__)

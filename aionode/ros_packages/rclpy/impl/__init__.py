@@ -1,5 +1,5 @@
 """Modules that are internal to rclpy, but that some programs use anyway."""
 
-from rclpy._reexports import add_names
+from rclpy.impl import implementation_singleton, logging_severity, rcutils_logger
 
-add_names(__name__)
+__all__ = ["implementation_singleton", "logging_severity", "rcutils_logger"]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from aionode.engine.rules import managed_entity as core
 from aionode.engine.rules.lifecycle_states import TransitionCallbackReturn
 from aionode.engine.rules.managed_entity import ManagedEntity
-from rclpy._reexports import add_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,6 +41,3 @@ class SimpleManagedEntity(core.SimpleManagedEntity):
             return only_when_enabled
 
         return decorate if wrapped is None else decorate(wrapped)
-
-
-add_names(__name__)

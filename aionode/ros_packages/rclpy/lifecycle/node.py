@@ -9,7 +9,6 @@ from aionode.engine.rules.lifecycle_answers import StateAnswers
 from rclpy._impl import messages as msg
 from rclpy._impl.errors import RCLError
 from rclpy._impl.lifecycle import LifecycleStateMachine, TransitionCallbackReturn
-from rclpy._reexports import add_names
 from rclpy.lifecycle.managed_entity import ManagedEntity
 from rclpy.lifecycle.publisher import LifecyclePublisher
 from rclpy.node import Node
@@ -295,6 +294,3 @@ class LifecycleNode(LifecycleNodeMixin, Node):
         """Destroy its entities, and leave the graph."""
         self._state_machine.destroy()
         super().destroy_node()
-
-
-add_names(__name__)

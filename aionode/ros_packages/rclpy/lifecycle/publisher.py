@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from rclpy._reexports import add_names
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
 
@@ -24,6 +23,3 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
     def publish(self, msg: MsgT | bytes) -> None:
         """Publish a message, if the node is active."""
         Publisher.publish(self, msg)
-
-
-add_names(__name__)
