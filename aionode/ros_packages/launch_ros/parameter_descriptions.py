@@ -33,9 +33,6 @@ __all__ = [
     "evaluate_values",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class ParameterValue:
     """A value of a given type."""

@@ -13,9 +13,6 @@ from launch.substitution import (
 
 __all__ = ["Executable"]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 def substitutions_of(value: SomeSubstitutionsType | None) -> list[Substitution] | None:
     """Return the substitutions that make up a text, if there is one."""

@@ -22,10 +22,6 @@ __all__ = [
     "Parameter",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
-
 INDEX = "ament_index_python.packages"
 """The module that finds packages: aionode's, which also knows the workspace."""
 

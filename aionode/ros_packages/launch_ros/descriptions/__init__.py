@@ -24,9 +24,6 @@ from launch_ros.parameter_descriptions import (
 
 __all__ = ["ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class ComposableNode:
     """A node that a container gets: a plugin of C++, or a class of Python as ``module:Class``."""

@@ -32,9 +32,6 @@ __all__ = [
     "load_python_launch_file_as_module",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class LaunchDescriptionSource:
     """A description, or a file that has one."""

@@ -57,9 +57,6 @@ __all__ = [
     "ThisLaunchFileDir",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
     """Return the truth of a text."""

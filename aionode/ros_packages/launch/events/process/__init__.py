@@ -25,9 +25,6 @@ __all__ = [
     "matches_pid",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class RunningProcessEvent(Event):
     """Something that happened to a process."""

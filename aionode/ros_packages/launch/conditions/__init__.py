@@ -20,9 +20,6 @@ __all__ = [
     "evaluate_condition_expression",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class InvalidConditionExpressionError(Exception):
     """A condition is neither true nor false."""

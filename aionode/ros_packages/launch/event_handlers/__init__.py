@@ -22,9 +22,6 @@ __all__ = [
     "OnShutdown",
 ]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class OnActionEventBase(BaseEventHandler):
     """Reacts to what happens to one action, to those that a function names, or to all."""

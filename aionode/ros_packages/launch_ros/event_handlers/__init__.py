@@ -10,9 +10,6 @@ from launch_ros.events.lifecycle import StateTransition
 
 __all__ = ["OnStateTransition"]
 
-__path__: list[str] = []
-"""ROS has a module for each of these names; `aionode.rclpy` finds it in what looks a package."""
-
 
 class OnStateTransition(BaseEventHandler):
     """Reacts to the transitions of managed nodes."""
