@@ -23,8 +23,9 @@ import sys
 from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
-from importlib.abc import Loader, MetaPathFinder
+from importlib.abc import Loader, MetaPathFinder, SourceLoader
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec
 from operator import attrgetter
 from pathlib import Path
 from types import ModuleType
@@ -62,6 +63,9 @@ PARTS = {
 
 LONGEST_NAME = 300
 """Longer names are compared with none: that takes time with their length."""
+
+LISTED = re.compile(r"^__all__ = \[(.*?)\]", re.DOTALL | re.MULTILINE)
+"""Where a generated module lists its types."""
 
 CLOSE = 0.85
 """How like a name has to be to be suggested, from 0 to 1."""
@@ -174,16 +178,13 @@ def shipped_packages() -> frozenset[str]:
 
 
 def interface_names(package: str | None = None) -> tuple[str, ...]:
-    """Return the ROS names of all types, sorted; those of one package if it is given.
-
-    This imports their modules.
-    """
+    """Return the ROS names of all types, sorted; those of one package if it is given."""
     packages = known_packages() if package is None else {package}
     return tuple(
         f"{one}/{kind}/{name}"
         for one in sorted(packages)
         for kind in KINDS
-        for name in sorted(types_of(one, kind))
+        for name in sorted(type_names_of(one, kind))
     )
 
 
@@ -214,13 +215,34 @@ def types_of(package: str, kind: str) -> dict[str, type[Any]]:
     """
     if not package.isidentifier() or kind not in KINDS:
         return {}
+    return types_written(package, kind) | imported_types(package, kind)
+
+
+def type_names_of(package: str, kind: str) -> set[str]:
+    """Return the names of the types of one kind in a package, without creating their classes.
+
+    A generated module lists them in ``__all__``; others are imported.
+    """
+    module_name = f"{__name__}.{package}.{kind}"
+    if module_name not in sys.modules and package in shipped_packages():
+        spec = find_spec(module_name)
+        if spec is None:
+            return set(types_written(package, kind))
+        if isinstance(spec.loader, SourceLoader):
+            listed = LISTED.search(spec.loader.get_source(module_name) or "")
+            if listed is not None:
+                return {*re.findall(r'"(\w+)"', listed[1]), *types_written(package, kind)}
+    return set(types_of(package, kind))
+
+
+def types_written(package: str, kind: str) -> dict[str, type[Any]]:
+    """Return the types of one kind in a package that the program itself has written, by name."""
     prefix = f"{package}/{kind}/"
-    written = {
+    return {
         name.removeprefix(prefix): value
         for name, value in list(TYPES_BY_NAME.items())
         if name.startswith(prefix)
     }
-    return written | imported_types(package, kind)
 
 
 def imported_types(package: str, kind: str) -> dict[str, type[Any]]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import subprocess
+import sys
 
 import pytest
 
@@ -122,3 +124,28 @@ def test_constants_are_those_of_rclpy() -> None:
     """A byte constant is bytes, a number a number."""
     assert Log.WARN == 30
     assert get_message("diagnostic_msgs/msg/DiagnosticStatus").STALE == b"\x03"
+
+
+NAMES_WITHOUT_CLASSES = """
+import sys
+from aionode import interfaces
+
+names = interfaces.interface_names()
+loaded = [name for name in sys.modules if name.startswith("aionode.interfaces.nav")]
+found = {
+    f"{package}/{kind}/{name}"
+    for package in interfaces.shipped_packages()
+    for kind in interfaces.KINDS
+    for name in interfaces.types_of(package, kind)
+}
+print([name for name in loaded if name.count(".") > 2], len(names) > 1000, found == set(names))
+"""
+
+
+def test_the_names_of_types_are_known_before_their_classes_are() -> None:
+    """A list of all names, and the completion of one, shall not make a thousand classes."""
+    done = subprocess.run(
+        [sys.executable, "-c", NAMES_WITHOUT_CLASSES], capture_output=True, text=True, check=True
+    )
+
+    assert done.stdout == "[] True True\n"
