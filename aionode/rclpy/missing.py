@@ -26,13 +26,17 @@ INSTEAD: Final = {
     "launch_testing": "aionode's fixtures for pytest start nodes in tests",
     "tf2_kdl": "tf_transformations computes with rotations in numpy",
     "PyKDL": "tf_transformations computes with rotations in numpy",
-    "image_geometry": "OpenCV (`pip install opencv-python-headless`) has its functions",
+    "image_geometry": "OpenCV (`pip install 'aionode[opencv]'`) has its functions",
     "xacro": "`pip install 'aionode[xacro]'` brings it",
     "rospkg": "`pip install rospkg` has it",
     "catkin_pkg": "`pip install catkin_pkg` has it",
     "osrf_pycommon": "`pip install osrf-pycommon` has it",
-    "transforms3d": "`pip install transforms3d` has it",
-    "cv2": "`pip install opencv-python-headless` has it",
+    "cv2": "`pip install 'aionode[opencv]'` brings it",
+    "matplotlib": "`pip install 'aionode[desktop]'` brings it",
+    "requests": "`pip install 'aionode[desktop]'` brings it",
+    "scipy": "`pip install 'aionode[desktop]'` brings it",
+    "serial": "`pip install 'aionode[desktop]'` brings it",
+    "transforms3d": "`pip install 'aionode[desktop]'` brings it",
 }
 """The replacement of a package, or where to get it."""
 
@@ -49,7 +53,8 @@ ROS_1: Final = """
 """
 """Packages that exist only in ROS 1."""
 
-NOT_OF_ROS: Final = ("cv2", "transforms3d")
+NOT_OF_ROS: Final = {"cv2", "matplotlib", "requests", "scipy", "serial", "transforms3d"}
+"""Modules that ROS brings along, or that its programs use beside it."""
 
 
 def advice(module: str, supplied: frozenset[str] = frozenset()) -> str | None:

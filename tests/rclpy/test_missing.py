@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 from aionode.rclpy.missing import advice, missing_modules
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize(
@@ -31,9 +35,28 @@ def test_a_known_package_has_its_own_way(module: str, part: str) -> None:
     assert part in text
 
 
+@pytest.mark.parametrize(
+    ("module", "extra", "distribution"),
+    [
+        ("cv2", "opencv", "opencv-python-headless"),
+        ("scipy.spatial", "desktop", "scipy"),
+        ("serial", "desktop", "pyserial"),
+        ("xacro", "xacro", "xacro"),
+    ],
+)
+def test_what_an_extra_brings_is_said_with_its_name(
+    module: str, extra: str, distribution: str
+) -> None:
+    """One command, whose extra is there and brings the module."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+    assert f"pip install 'aionode[{extra}]'" in (advice(module) or "")
+    assert any(line.startswith(distribution) for line in project["optional-dependencies"][extra])
+
+
 def test_nothing_is_said_about_other_modules() -> None:
     """They are not ROS's, and pip's own words fit better."""
-    assert advice("requests") is None
+    assert advice("flask") is None
     assert advice("helper") is None
 
 
