@@ -215,7 +215,7 @@ def is_machinery(filename: str) -> bool:
 OWN_PACKAGES = frozenset(
     {
         *("ament_index_python", "launch", "launch_param_builder", "launch_ros", "launch_xml"),
-        *("launch_yaml", "nav2_common"),
+        *("launch_yaml", "moveit_configs_utils", "nav2_common"),
     }
 )
 """The packages of ROS that aionode has for launch files."""
