@@ -17,7 +17,7 @@ from aionode._packages._here import (
 )
 from aionode._packages._packages import Packages
 from aionode._packages._standard import program_module, remark_on, standard_packages
-from aionode._packages._workspace import workspace_of
+from aionode._packages._workspace import package_of, workspace_of
 
 __all__ = [
     "Executable",
@@ -25,6 +25,7 @@ __all__ = [
     "around",
     "here",
     "is_python",
+    "package_of",
     "package_of_stand_in",
     "program_module",
     "remark_on",

@@ -101,3 +101,9 @@ def package_name(folder: Path) -> str:
         return folder.name
     match = NAME.search(text)
     return match[1] if match else folder.name
+
+
+def package_of(file: Path) -> str | None:
+    """Return the name of the package whose source folder contains a file, if one does."""
+    folder = package_folder(file)
+    return None if folder is None else package_name(folder)

@@ -36,8 +36,10 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import settle
 from tests.support.ways_in import WAYS, Answer, Ask, Way, until, way_in
 
-VERBS: Final = tuple(verb for verb in ALL_VERBS if verb != "stop")
-"""All but that of assistants, whose rules have a test of their own: test_mcp_policy.py."""
+VERBS: Final = tuple(verb for verb in ALL_VERBS if verb not in {"stop", "asset"})
+"""All about names of the graph but that of assistants, whose rules have a test of their own:
+test_mcp_policy.py. Those about files are in test_assets.py.
+"""
 
 USED: Final = tuple(verb for verb in VERBS if verb != "see")
 SENT: Final = ("publish", "call", "goal")

@@ -48,6 +48,10 @@ PORT = 9090
     help="Without a policy: change a limit for clients, such as call_sec=60. Can be repeated.",
 )  # fmt: skip
 @click.option(
+    "--assets", metavar="PACKAGE", multiple=True,
+    help="Without a policy: let clients read files of a package, such as meshes. Can be repeated.",
+)  # fmt: skip
+@click.option(
     "--mcp", is_flag=True,
     help="Serve clients of MCP, such as those of language models, at /mcp.",
 )  # fmt: skip
@@ -67,6 +71,7 @@ def gateway_command(
     path: str | None,
     allow_write: bool,
     limits: tuple[str, ...],
+    assets: tuple[str, ...],
     **assistants: Any,
 ) -> None:
     """Serve the robot to browsers, programs and apps.
@@ -84,7 +89,10 @@ def gateway_command(
     if path is not None and limits:
         problem = "--limit cannot be combined with --policy: write it under [limits] there"
         raise click.UsageError(problem, ctx)
-    serve = serving(path, allow_write, host, port, limits, **assistants)
+    if path is not None and assets:
+        problem = "--assets cannot be combined with --policy: write `asset` in a rule there"
+        raise click.UsageError(problem, ctx)
+    serve = serving(path, allow_write, host, port, limits, assets, **assistants)
     run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False)
 
 
@@ -94,6 +102,7 @@ def serving(
     host: str,
     port: int,
     limits: Sequence[str] = (),
+    assets: Sequence[str] = (),
     **assistants: Any,
 ) -> Callable[[Node, Output], Coroutine[Any, Any, int | None]]:
     """Return the coroutine function that serves the robot until it is cancelled.
@@ -104,6 +113,7 @@ def serving(
         host: Where to listen.
         port: Which port.
         limits: Limits without a policy file, as text.
+        assets: Packages whose files are served without a policy file.
         assistants: Further arguments of the gateway: ``mcp``, ``about`` and ``bags``.
 
     Raises:
@@ -118,7 +128,7 @@ def serving(
             given = Limits().with_given(limits)
         except ValueError as error:
             raise CommandError(f"--limit: {error}") from error
-        policy = Policy.default(allow_write=allow_write, limits=given)
+        policy = Policy.default(allow_write=allow_write, limits=given, assets=assets)
     else:
         policy = Policy.load(path)
 

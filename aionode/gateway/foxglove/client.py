@@ -15,6 +15,7 @@ from aionode.gateway.foxglove import frames
 from aionode.gateway.foxglove.channels import Channels
 from aionode.gateway.foxglove.parameters import Parameters
 from aionode.gateway.foxglove.playback import Playback
+from aionode.gateway.session.assets import asset_of_uri, read_asset
 from aionode.gateway.session.encoding.client_json import decoded
 from aionode.gateway.session.encoding.values import json_of
 from aionode.gateway.session.lanes import Lanes
@@ -33,6 +34,7 @@ CAPABILITIES: Final = (
     "parameters",
     "parametersSubscribe",
     "connectionGraph",
+    "assets",
     "time",
 )
 ENCODINGS: Final = ("cdr", "json")
@@ -168,6 +170,8 @@ class Client:
                 self._start(self._call, asked, self._session.arrivals.arrival_ns())
             case frames.PlaybackRequest():
                 await self._put("playback", self.playback.control, self._start, asked)
+            case frames.FetchAsset():
+                await self._put("assets", self._fetch, asked)  # one file at a time
             case frames.Subscribe() | frames.Unsubscribe():
                 await self._put("channels", self._do, asked)
             case _:
@@ -215,6 +219,17 @@ class Client:
                 self._graph.tell()
             case frames.UnsubscribeConnectionGraph():
                 self._graph = None
+
+    async def _fetch(self, asked: frames.FetchAsset) -> None:
+        try:
+            content = await read_asset(self._session, asset_of_uri(asked.uri))
+        except (AionodeError, FileNotFoundError) as error:
+            if isinstance(error, AionodeError):
+                self._session.rights.note_failure(error, "fetchAsset")
+            frame = frames.asset_frame(asked.request_id, error=str(error))
+        else:
+            frame = frames.asset_frame(asked.request_id, content)
+        self._session.outbox.send(frame)
 
     # Messages and calls of the client
 

@@ -143,6 +143,13 @@ class UnsubscribeConnectionGraph(Op, frozen=True, tag="unsubscribeConnectionGrap
     """Stop requesting them."""
 
 
+class FetchAsset(Op, frozen=True, tag="fetchAsset"):
+    """A file, such as a mesh of ``package://``."""
+
+    uri: str
+    request_id: Id
+
+
 ClientOp: TypeAlias = (
     Subscribe
     | Unsubscribe
@@ -154,6 +161,7 @@ ClientOp: TypeAlias = (
     | UnsubscribeParameterUpdates
     | SubscribeConnectionGraph
     | UnsubscribeConnectionGraph
+    | FetchAsset
 )
 DECODER: Final = msgspec.json.Decoder(ClientOp)
 
@@ -277,6 +285,13 @@ def response_frame(call: ServiceCall, data: bytes) -> bytes:
 
 
 PLAYING, PAUSED, ENDED = 0, 1, 3
+
+
+def asset_frame(request_id: int, data: bytes = b"", error: str = "") -> bytes | LongFrame:
+    """Return the frame of a file, or of the reason why there is none."""
+    text = error.encode()
+    head = struct.pack("<BIBI", 4, request_id, bool(text), len(text))
+    return binary_frame(head + text, data)
 
 
 def playback_frame(

@@ -42,6 +42,7 @@ from aionode.gateway.http.openapi import openapi
 from aionode.gateway.http.parameters import set_parameter, show_parameters
 from aionode.gateway.http.topics import answer_topic
 from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.assets import read_asset
 from aionode.gateway.session.encoding.values import json_of
 from aionode.node import Node
 
@@ -87,6 +88,7 @@ def routes(clients: Clients) -> list[BaseRoute]:
         ("POST", "/actions/{name:path}", send_goal),
         ("GET", "/parameters/{name:path}", show_parameters),
         ("PUT", "/parameters/{name:path}", set_parameter),
+        ("GET", "/assets/{name:path}", send_asset),
         ("GET", "/openapi.json", api.openapi),
         ("GET", "/metrics", api.metrics),
     ]
@@ -338,6 +340,15 @@ async def goal_events(
             yield event("failure", msgspec.json.encode({"code": code, "error": text}))
         else:
             yield event("result", outcome_of(goal, result))
+
+
+async def send_asset(asked: Asked) -> Response:
+    """Return a file of a package, as bytes: no browser may take one for a page of the robot."""
+    try:
+        content = await read_asset(asked.session, asked.name)
+    except FileNotFoundError as error:
+        raise HTTPException(404, str(error)) from None
+    return Response(content, headers=HEADERS, media_type="application/octet-stream")
 
 
 def outcome_of(goal: Any, result: Any) -> bytes:

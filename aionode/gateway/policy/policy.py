@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["Decision", "FieldLimit", "LeaseRule", "Limits", "Policy", "Rule", "Tls", "Verb", "Who"]
 
 Verb: TypeAlias = Literal[
-    "see", "subscribe", "publish", "call", "goal", "parameter", "advertise", "stop"
+    "see", "subscribe", "publish", "call", "goal", "parameter", "advertise", "stop", "asset"
 ]
 """The uses of a name by a client. ``parameter`` is for setting one; reading one needs ``see``."""
 
@@ -45,7 +45,11 @@ VERBS: Final[tuple[Verb, ...]] = (
     "parameter",
     "advertise",
     "stop",
+    "asset",
 )
+NAMING: Final = VERBS[:-1]
+"""The verbs about names of the graph: who may use one of these sees it."""
+
 WRITING: Final[tuple[Verb, ...]] = ("publish", "call", "goal", "parameter", "advertise", "stop")
 
 UNTYPED: Final[tuple[Verb, ...]] = ("see", "parameter")
@@ -53,11 +57,11 @@ UNTYPED: Final[tuple[Verb, ...]] = ("see", "parameter")
 
 LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
     "type": ("see", "subscribe", "publish", "call", "goal", "advertise", "stop"),
-    "rate_hz": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
-    "max_bytes": ("publish", "call", "goal"),
+    "rate_hz": ("subscribe", "publish", "call", "goal", "parameter", "advertise", "asset"),
+    "max_bytes": ("publish", "call", "goal", "asset"),
     "fields": ("publish", "call", "goal", "parameter"),
     "finite": ("publish", "call", "goal", "parameter"),
-    "ask": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
+    "ask": ("subscribe", "publish", "call", "goal", "parameter", "advertise", "asset"),
     "lease": ("publish",),
 }
 """The keys of a rule that limit what it allows, and the verbs that each of them can limit."""
@@ -95,6 +99,12 @@ READ_ONLY: Final = (
     "without a policy, clients only read; start the gateway with --allow-write, or write a policy"
 )
 """The reason why a client may not write if there is no policy file."""
+
+NO_ASSETS: Final = (
+    "without a policy, clients read no files of packages; start the gateway with --assets PACKAGE, "
+    "or write a policy"
+)
+"""The reason why a client may not read a file if there is no policy file."""
 
 
 ORIGIN: Final = re.compile(
@@ -149,10 +159,13 @@ class Rule(Part, frozen=True):
         advertise: The services and actions that they may offer themselves.
         stop: The topics and actions on which an assistant of theirs may end what others move. It
             may always end its own motion.
+        asset: The files of packages that they may read, such as the meshes of a model, as
+            ``/package/path``; ``/package/**`` stands for all files of a package.
         type: The types that the rule applies to; all types if empty.
         rate_hz: How often they may do so with each name, in hertz. One second's worth may come in a
             burst.
-        max_bytes: The largest message, request or goal, in bytes of CDR; None for any size.
+        max_bytes: The largest message, request or goal, in bytes of CDR, or the largest file. By
+            default, messages may have any size, and files 16 MiB.
         fields: The limits of fields, by paths such as ``linear.x``; a parameter has the one field
             ``value``.
         finite: Whether NaN and infinity are refused anywhere in a message, request, goal or
@@ -172,6 +185,7 @@ class Rule(Part, frozen=True):
     parameter: Names = []
     advertise: Names = []
     stop: Names = []
+    asset: Names = []
     type: Names = []
     rate_hz: float = math.inf
     max_bytes: int | None = None
@@ -467,7 +481,13 @@ class Policy(Part, frozen=True):
         return msgspec.structs.replace(policy, path=path)
 
     @classmethod
-    def default(cls, *, allow_write: bool = False, limits: Limits = Limits()) -> Policy:  # noqa: B008  # frozen
+    def default(
+        cls,
+        *,
+        allow_write: bool = False,
+        limits: Limits = Limits(),  # noqa: B008  # frozen
+        assets: Iterable[str] = (),
+    ) -> Policy:
         """Return the policy of a gateway without a policy file.
 
         Only programs on this host may connect. They may read everything and write nothing.
@@ -476,10 +496,16 @@ class Policy(Part, frozen=True):
             allow_write: Whether these programs may also publish, call, send goals, set parameters
                 and offer services. Velocities are then published by lease.
             limits: The limits for all clients.
+            assets: The packages whose files they read.
         """
         everything = "/**"
         writing: dict[str, Any] = dict.fromkeys(WRITING, everything)
         allow, refuse = [Rule(see=everything, subscribe=everything)], []
+        files = [f"/{package}/**" for package in assets]
+        if files:
+            allow.append(Rule(asset=files))
+        else:
+            refuse.append(Rule(asset=everything, because=NO_ASSETS))
         if allow_write:
             allow.append(Rule(publish=everything, type=COMMANDS, lease=LeaseRule(ttl_sec=0.5)))
             allow.append(Rule(**writing))
@@ -579,9 +605,10 @@ def first_rule(
     """Return the rule that decides: the first matching refusal, otherwise the first that allows.
 
     A client sees what it may use, and may not use what it may not see. A node is visible to those
-    who may see it or set its parameters; a rule about topics of the same name does not matter.
+    who may see it or set its parameters; a rule about topics or files of the same name does not
+    matter.
     """
-    refusing: tuple[Verb, ...] = (verb,) if verb == "see" else (verb, "see")
+    refusing: tuple[Verb, ...] = (verb,) if verb in {"see", "asset"} else (verb, "see")
     for rule in policy.refuse:
         if rule.type and not type_name:  # not known yet: the request is checked again when it is
             continue
@@ -589,7 +616,7 @@ def first_rule(
             return rule
     allowing: tuple[Verb, ...] = (verb,)
     if verb == "see":
-        allowing = VERBS if type_name else UNTYPED
+        allowing = NAMING if type_name else UNTYPED
     for rule in policy.allow:
         if verb == "see" and rule.type and not type_name:
             continue
