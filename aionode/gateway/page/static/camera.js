@@ -1,13 +1,19 @@
-// Shows the newest image of a topic: sensor_msgs/CompressedImage, or Image.
+// Shows the newest images of topics: sensor_msgs/CompressedImage, or Image.
 
-import { fill } from "./dom.js";
+import { another, fill } from "./dom.js";
 import { picture } from "./picture.js";
 
 const EVERY_MS = 100;
 const IMAGE = /^sensor_msgs\/(msg\/)?(Image|CompressedImage)$/;
 
-export function camera(robot, topics) {
+export function cameras(robot, topics) {
   const root = document.getElementById("camera");
+  const first = root.querySelector(".view");
+  root.querySelector(".more").onclick = () => camera(robot, topics, another(first));
+  camera(robot, topics, first);
+}
+
+function camera(robot, topics, root) {
   const select = root.querySelector("select");
   const canvas = root.querySelector("canvas");
   const caption = root.querySelector(".caption");
@@ -38,7 +44,9 @@ export function camera(robot, topics) {
 
   select.onchange = choose;
   document.addEventListener("visibilitychange", choose);
-  topics.addEventListener("change", () => fill(select, topics.named(IMAGE), "choose a topic"));
+  const offer = () => fill(select, topics.named(IMAGE), "choose a topic");
+  topics.addEventListener("change", offer);
+  offer();
 }
 
 function compressed({ data, format }) {

@@ -19,6 +19,14 @@ export function fill(select, values, empty) {
   select.value = values.includes(chosen) ? chosen : "";
 }
 
+/** Put an empty copy of a view behind those that are there, and return it. */
+export function another(view) {
+  const made = view.cloneNode(true);
+  for (const part of made.querySelectorAll("select, .legend, .caption")) part.replaceChildren();
+  view.parentNode.append(made);
+  return made;
+}
+
 /** Say something above the panels, for a while. */
 export function notice(text) {
   const place = document.getElementById("notice");

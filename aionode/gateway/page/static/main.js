@@ -1,11 +1,14 @@
 // The page of a robot: connects with the gateway that has served it, and fills its panels.
 
-import { camera } from "./camera.js";
+import { cameras } from "./camera.js";
 import { notice } from "./dom.js";
 import { log, parameters, services } from "./nodes.js";
 import { Robot } from "./robot.js";
+import { Scene } from "./scene.js";
 import { Teleop } from "./teleop.js";
 import { MessageView, Topics } from "./topics.js";
+import { frameTree, Transforms } from "./transforms.js";
+import { view3d } from "./view3d.js";
 
 const robot = new Robot(new URL(location.href.replace(/^http/, "ws").replace(/[?#].*/, "")));
 const state = document.getElementById("state");
@@ -14,8 +17,12 @@ const signIn = document.getElementById("sign-in");
 
 const topics = new Topics(robot);
 new MessageView(robot, topics);
-camera(robot, topics);
+cameras(robot, topics);
 new Teleop(robot, topics);
+const transforms = new Transforms(robot);
+const scene = new Scene(robot, topics, transforms);
+view3d(robot, topics, scene, transforms);
+frameTree(transforms);
 log(robot);
 parameters(robot);
 services(robot);

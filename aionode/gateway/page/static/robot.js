@@ -99,6 +99,13 @@ export class Robot extends EventTarget {
       const raw = frame.msg?.bytes instanceof Uint8Array && "secs" in frame.msg;
       const size = isText ? data.length : raw ? frame.msg.bytes.length : data.byteLength;
       this.topics.get(frame.topic)?.readers.forEach((reader) => reader.read(raw ? null : frame.msg, size));
+    } else if (frame.op === "action_feedback") {
+      this.calls.get(frame.id)?.feedback(frame.values);
+    } else if (frame.op === "action_result") {
+      const goal = this.calls.get(frame.id);
+      this.calls.delete(frame.id);
+      if (frame.result) goal?.resolve(frame);
+      else goal?.reject(new Error(String(frame.values)));
     } else if (frame.op === "service_response") {
       const call = this.calls.get(frame.id);
       this.calls.delete(frame.id);
@@ -127,10 +134,11 @@ export class Robot extends EventTarget {
   /**
    * Call read(message, size) for each message, and return a function that ends it.
    *
-   * A reader without values gets null for the message: then nobody decodes it.
+   * A reader without values gets null for the message: then nobody decodes it. With the type of the
+   * topic it may come before its publishers.
    */
-  subscribe(name, read, { values = true, everyMs = 0 } = {}) {
-    const topic = this.topics.get(name) ?? { readers: new Set(), id: null };
+  subscribe(name, read, { values = true, everyMs = 0, type } = {}) {
+    const topic = this.topics.get(name) ?? { readers: new Set(), id: null, type };
     const reader = { read, values, everyMs };
     topic.readers.add(reader);
     this.topics.set(name, topic);
@@ -155,7 +163,7 @@ export class Robot extends EventTarget {
     topic.settings = settings;
     topic.socket = this.socket;
     topic.id = `subscribe:${name}:${this.nextId++}`;
-    this.send({ op: "subscribe", id: topic.id, topic: name, compression, throttle_rate });
+    this.send({ op: "subscribe", id: topic.id, topic: name, type: topic.type, compression, throttle_rate });
     if (before) this.send({ op: "unsubscribe", id: before, topic: name });
   }
 
@@ -181,5 +189,33 @@ export class Robot extends EventTarget {
       this.calls.set(id, { resolve, reject });
       this.send({ op: "call_service", id, service, args, timeout });
     });
+  }
+
+  // Goals
+
+  /** Send a goal; `result` of what this returns is a promise of its end, and fails if it is refused. */
+  sendGoal(action, action_type, args, feedback) {
+    const id = `send_action_goal:${action}:${this.nextId++}`;
+    const result = new Promise((resolve, reject) => {
+      if (!this.isOpen) { reject(new Error("not connected")); return; }
+      this.calls.set(id, { resolve, reject, feedback });
+      this.send({ op: "send_action_goal", id, action, action_type, args, feedback: true });
+    });
+    return { result, cancel: () => this.send({ op: "cancel_action_goal", id, action }) };
+  }
+
+  // Files
+
+  /** Return the bytes of a file of a package, by its package:// address. */
+  async asset(uri) {
+    const [, packageName, path] = /^package:\/\/([^/]+)\/(.+)$/.exec(uri) ?? [];
+    if (!path) throw new Error(`${uri}: only package:// is served`);
+    const url = new URL(`assets/${[packageName, ...path.split("/").map(decodeURIComponent)].map(encodeURIComponent).join("/")}`, this.url);
+    url.protocol = url.protocol.replace("ws", "http");
+    const headers = this.token ? { Authorization: `Bearer ${this.token}` } : {};
+    const answer = await fetch(url, { headers });
+    if (answer.ok) return answer.arrayBuffer();
+    const { error } = await answer.json().catch(() => ({}));
+    throw new Error(error ?? `${uri}: ${answer.status}`);
   }
 }

@@ -1,6 +1,6 @@
 // The list of topics with their rates, the message of one topic, and plots of its numbers.
 
-import { element, leaves, short } from "./dom.js";
+import { another, element, leaves, short } from "./dom.js";
 import { Plot } from "./plot.js";
 
 const LIST_MS = 3000;
@@ -158,34 +158,42 @@ export class MessageView {
   }
 }
 
+/** The plots; numbers that are chosen go to the last one. */
 class Plots {
   constructor(robot) {
     this.robot = robot;
     const root = document.getElementById("plot");
-    this.legend = root.querySelector(".legend");
-    this.plot = new Plot(root.querySelector("canvas"));
+    const first = root.querySelector(".view");
+    root.querySelector(".more").onclick = () => this.use(another(first));
+    this.use(first);
+  }
+
+  use(view) {
+    this.legend = view.querySelector(".legend");
+    this.plot = new Plot(view.querySelector("canvas"));
     this.names = new Set();
   }
 
   add(topic, path) {
+    const { legend, names, plot } = this;
     const name = `${topic} ${path}`;
-    if (this.names.has(name)) return;
-    this.names.add(name);
-    const colour = this.plot.add(name);
+    if (names.has(name)) return;
+    names.add(name);
+    const colour = plot.add(name);
     const end = this.robot.subscribe(topic, (message) => {
       if (message === null) return;
       for (const [each, value] of leaves(message)) {
-        if (each === path) this.plot.push(name, Number(value));
+        if (each === path) plot.push(name, Number(value));
       }
     }, { everyMs: 20 });
     const button = element("button", { type: "button", title: "remove", textContent: `${name} ×` });
     button.style.color = colour;
     button.onclick = () => {
       end();
-      this.plot.remove(name);
-      this.names.delete(name);
+      plot.remove(name);
+      names.delete(name);
       button.remove();
     };
-    this.legend.append(button);
+    legend.append(button);
   }
 }
