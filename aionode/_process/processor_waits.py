@@ -11,13 +11,17 @@ __all__ = ["WAITS", "ProcessorWaits"]
 REPORT_NS: Final = 60_000_000_000
 """Minimum time between two reports, in nanoseconds."""
 
+MUCH_NS: Final = REPORT_NS // 100
+"""Waits that are reported at any load, in nanoseconds: a process may be bound to a busy core."""
+
 logger = logging.getLogger("aionode.load")
 
 
 class ProcessorWaits:
     """Counts callbacks that took long because their thread was ready to run and had no processor.
 
-    Nothing in the program mends that, so the log has one line a minute for the whole process.
+    Nothing in the program mends that, so the log has one line a minute for the whole process, and
+    none while the load is low and the waits are short.
 
     Attributes:
         count: How many callbacks have waited so for longer than their budget.
@@ -45,15 +49,21 @@ class ProcessorWaits:
         if now_ns - self._reported_ns < REPORT_NS:
             return
         count, total_ns = self._reported
+        since_ns = self.total_ns - total_ns
+        load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
+        cores = os.cpu_count() or 1
+        if load <= cores and since_ns < MUCH_NS:
+            return
         self._reported, self._reported_ns = (self.count, self.total_ns), now_ns
-        times = self.count - count
+        more = ", which is more than these can do at a time" if load > cores else ""
         logger.warning(
             "callbacks of this process wait for a processor: %d since the last such line, %.0f ms "
-            "in all; the load is %.1f on %d cores, which is more than these can do at a time",
-            times,
-            (self.total_ns - total_ns) / 1e6,
-            os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0,
-            os.cpu_count() or 1,
+            "in all; the load is %.1f on %d cores%s",
+            self.count - count,
+            since_ns / 1e6,
+            load,
+            cores,
+            more,
         )
 
 

@@ -6,6 +6,7 @@ runs five times as fast as wall time.
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 
 import aionode
@@ -30,4 +31,11 @@ async def main() -> None:
 
 
 if __name__ == "__main__":
+    # Whatever is for ROS is left to `run`; this is what answers --help.
+    argparse.ArgumentParser(
+        prog="python -m aionode.examples.rover",
+        description="A small robot in a world of its own, and a page to drive it.",
+        epilog="--ros-args -p port:=8090 has the page at another port; "
+        "--ros-args -p use_sim_time:=true -p rate:=5.0 runs it five times as fast as wall time.",
+    ).parse_known_args()
     aionode.run(main)
