@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import subprocess
 import sys
@@ -140,6 +141,35 @@ async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
         assert "domain 7, with no nodes" in str(client.instructions)
 
     assert not answered.is_error
+
+
+async def test_it_ends_with_its_client_while_a_call_is_under_way() -> None:
+    """The kernel closes the streams of a client that is killed; nothing else tells the command."""
+    command = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "aionode", "mcp",
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env=isolated_environment(),
+    )  # fmt: skip
+    assert command.stdin is not None
+    assert command.stdout is not None
+    hello = {"protocolVersion": "2025-11-25", "capabilities": {},
+             "clientInfo": {"name": "raw", "version": "1"}}  # fmt: skip
+    watch = {"name": "watch", "arguments": {"topic": "/parameter_events", "seconds": 30}}
+    requests: list[dict[str, Any]] = [
+        {"id": 1, "method": "initialize", "params": hello},
+        {"method": "notifications/initialized"},
+        {"id": 2, "method": "tools/call", "params": watch},
+        {"id": 3, "method": "ping"},
+    ]
+    for request in requests:
+        command.stdin.write(json.dumps({"jsonrpc": "2.0", **request}).encode() + b"\n")
+    async with asyncio.timeout(60):
+        answers = [json.loads(await command.stdout.readline())["id"] for _ in range(2)]
+        command.stdin.close()
+        status = await command.wait()
+
+    assert answers == [1, 3]
+    assert status == 0
 
 
 def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
