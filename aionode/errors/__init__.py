@@ -47,6 +47,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   └── InvalidTopicNameException
     ├── PackageNotFoundError (LookupError)
     ├── PolicyFileError (ValueError)
+    ├── PolicyTooSlowError (TimeoutError)
     ├── ParameterException
     │   ├── InvalidParameterException (ValueError)
     │   ├── InvalidParameterTypeException (TypeError)
@@ -62,6 +63,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── ProgramStartError (OSError)
     ├── QueueFullError (RuntimeError)
     ├── RefusedError (PermissionError)
+    ├── StaleError (TimeoutError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError (TimeoutError)
     ├── RequestRefusedError (ValueError)
@@ -144,6 +146,7 @@ from aionode.errors._parameters import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from aionode.errors._policies import PolicyTooSlowError, StaleError
 from aionode.errors._programs import (
     ExecutableNotFoundError,
     MemberNotFoundError,
@@ -233,6 +236,7 @@ __all__ = [
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
     "PolicyFileError",
+    "PolicyTooSlowError",
     "ProgramStartError",
     "QueueFullError",
     "RefusedError",
@@ -240,6 +244,7 @@ __all__ = [
     "RequestTimeoutError",
     "ServiceError",
     "ServiceUnavailableError",
+    "StaleError",
     "TimeSourceChangedError",
     "TimeoutException",
     "ToolError",

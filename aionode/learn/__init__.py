@@ -1,7 +1,9 @@
 """Robot learning: from a demonstration to a policy that drives.
 
 A `Contract`, one YAML file, names the topics that a policy observes and commands, with the numbers
-in their messages, their ages and limits.
+in their messages, their ages and limits. `Contract.observe` shows the robot as a policy was trained
+to see it, and `Contract.act` sends its actions, each at its time, and stops the robot when there
+are none.
 """
 
 from __future__ import annotations
@@ -11,15 +13,30 @@ from typing import TYPE_CHECKING
 from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
+    from aionode.learn._actor import Actor, ActorStats
+    from aionode.learn._observer import Observations, Seen
     from aionode.learn.contract import Action, Contract, Feature, Observation
 
-__all__ = ["Action", "Contract", "Feature", "Observation"]
+__all__ = [
+    "Action",
+    "Actor",
+    "ActorStats",
+    "Contract",
+    "Feature",
+    "Observation",
+    "Observations",
+    "Seen",
+]
 
 PLACES = {
     "Action": "contract",
+    "Actor": "_actor",
+    "ActorStats": "_actor",
     "Contract": "contract",
     "Feature": "contract",
     "Observation": "contract",
+    "Observations": "_observer",
+    "Seen": "_observer",
 }
 """The module of each public name, imported on first use."""
 

@@ -1,0 +1,356 @@
+"""The entries of a contract: one topic each, and the numbers or pictures in its messages."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, Final, Literal, TypeAlias
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from aionode import image as pictures
+from aionode.errors import (
+    ContractError,
+    IdlError,
+    InterfaceNotFoundError,
+    InvalidTopicNameException,
+    MessageError,
+    escaped,
+)
+from aionode.interfaces import get_message
+from aionode.learn._field_paths import check_path, filled, number_at
+from aionode.message import Message, fields, from_builtins
+from aionode.names import validate_topic_name
+
+__all__ = ["Action", "Array", "Entry", "Observation"]
+
+Array: TypeAlias = "npt.NDArray[Any]"
+
+IMAGES: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+
+MOST_NUMBERS: Final = 10_000
+"""Maximum numbers of a feature."""
+
+FEATURE: Final = re.compile(r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*")
+"""What a feature's name may be; it becomes a folder and a column."""
+
+OWN: Final = ("timestamp", "frame_index", "episode_index", "index", "task_index", "task")
+"""Columns that every data set has, besides the features."""
+
+
+class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What observations and actions have in common: a topic, and the numbers in its messages.
+
+    Attributes:
+        feature: The name of the feature in the data set, such as ``observation.state``.
+        topic: The topic.
+        type: The message type, such as ``sensor_msgs/msg/JointState``.
+        fields: The path of each number in the message, such as ``position.shoulder``.
+        names: The name of each number; without them, the paths.
+        unit: The unit of the numbers, such as ``rad``; for people.
+        max_age: The age in seconds up to which a message counts; without it, 1.5 periods.
+        resample: Whether a number between two messages is computed from both, or is that of the
+            earlier one; without it, floating-point numbers of observations are interpolated.
+        stamp: The time of a message: that in its header, or that of its arrival; without it, the
+            header's if there is one.
+    """
+
+    feature: str
+    topic: str
+    type: str
+    fields: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    unit: str = ""
+    max_age: float = 0.0
+    resample: Literal["", "interpolate", "hold"] = ""
+    stamp: Literal["", "capture", "receive"] = ""
+
+    def __post_init__(self) -> None:
+        """Check the entry, and put in what was left out."""
+        if not FEATURE.fullmatch(self.feature) or self.feature in OWN:
+            raise ValueError(
+                f"feature: {self.feature!r}; letters, digits, _, - and dots fit, as in "
+                "observation.state"
+            )
+        try:
+            validate_topic_name(self.topic)
+        except InvalidTopicNameException as error:
+            raise ValueError(f"topic: {error}") from None
+        if not (math.isfinite(self.max_age) and self.max_age >= 0):
+            raise ValueError(f"max_age: {self.max_age:g}; a number of seconds fits")
+        if not issubclass(self.message_type, Message):
+            raise ValueError(f"type: {self.type} is no message")  # noqa: TRY004  # of a file
+        self.check_fields()
+        if self.names and len(self.names) != len(self.paths):
+            raise ValueError(f"names: {len(self.names)} names for {len(self.paths)} numbers")
+        if len(set(self.labels)) != len(self.labels):
+            raise ValueError("names: a name is there twice; each needs its own")
+        if self.stamp == "capture" and not self.has_header:
+            raise ValueError(f"stamp: {self.type} has no header with a time; receive fits")
+
+    def check_fields(self) -> None:
+        """Raise ValueError for a path that is not in the message."""
+        if not self.fields:
+            raise ValueError(f"fields: none; paths in {self.type} fit, such as {self.example}")
+        if len(self.fields) > MOST_NUMBERS:
+            raise ValueError(f"fields: {len(self.fields)}; at most {MOST_NUMBERS} fit")
+        cls = self.message_type
+        for path in self.paths:
+            try:
+                check_path(cls, path)
+            except ValueError as error:
+                raise ValueError(f"fields: {path!r}: {error}") from None
+
+    @property
+    def message_type(self) -> Any:
+        """The message class."""
+        try:
+            return get_message(self.type)
+        except (InterfaceNotFoundError, IdlError, TypeError) as error:
+            raise ValueError(f"type: {error}") from None
+
+    @property
+    def example(self) -> str:
+        """The names of the message's fields, for error texts."""
+        return ", ".join(each.name for each in fields(self.message_type))
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The paths of the numbers, with ``[0]`` written as ``.0``."""
+        return tuple(re.sub(r"\[(\w+)\]", r".\1", path) for path in self.fields)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The name of each number."""
+        return self.names or self.paths
+
+    @property
+    def has_header(self) -> bool:
+        """Whether messages have a header with a time."""
+        return any(
+            each.name == "header" and each.type.nested is get_message("std_msgs/msg/Header")
+            for each in fields(self.message_type)
+        )
+
+    @property
+    def is_captured(self) -> bool:
+        """Whether the time of a message is that in its header."""
+        return self.stamp != "receive" and self.has_header
+
+    def value(self, message: Any) -> Array:
+        """Return the numbers of a message as float32.
+
+        Raises:
+            MessageError: the message lacks one of them (a ValueError).
+        """
+        return np.array([number_at(message, path) for path in self.paths], np.float32)
+
+    def time_of(self, message: Any, received: int) -> int:
+        """Return the time of a message in nanoseconds, by its header or its arrival.
+
+        A header without a time, which is 0, counts as one that is not there.
+        """
+        if not self.is_captured:
+            return received
+        stamp = message.header.stamp
+        return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec) or received
+
+
+class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A topic that a policy observes: numbers of its messages, or pictures.
+
+    Attributes:
+        image: ``color``, ``mono`` or ``depth`` if messages are pictures; None for numbers.
+        height: The height of the pictures in pixels.
+        width: Their width.
+    """
+
+    image: Literal["color", "mono", "depth"] | None = None
+    height: int = 0
+    width: int = 0
+
+    def check_fields(self) -> None:
+        """Raise ValueError for a path that is not in the message, or a picture without a size."""
+        if self.image is None:
+            if self.type in IMAGES:
+                raise ValueError("image: none; color, mono or depth fits for pictures")
+            super().check_fields()
+        elif self.type not in IMAGES:
+            raise ValueError(f"image: {self.type} is no picture; {' or '.join(IMAGES)} fits")
+        elif self.fields or self.names:
+            raise ValueError("fields: pictures have none")
+        elif self.resample == "interpolate":
+            raise ValueError("resample: pictures are not interpolated; hold fits")
+        elif not (0 < self.height <= 16_384 and 0 < self.width <= 16_384):
+            raise ValueError(
+                f"height: {self.height} by width {self.width}; the pixels of the pictures fit, "
+                "such as 480 by 640"
+            )
+
+    @property
+    def is_interpolated(self) -> bool:
+        """Whether a value between two messages is computed from both."""
+        return self.image is None and self.resample != "hold"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of a value: of a picture, rows, columns and, in colour, three channels."""
+        if self.image is None:
+            return (len(self.paths),)
+        size = (self.height, self.width)
+        return (*size, 3) if self.image == "color" else size
+
+    def value(self, message: Any) -> Array:
+        """Return what a message shows: float32 numbers, or the pixels of a picture.
+
+        Pictures are uint8, in colour red, green and blue; depths are float32 metres, where 0 and
+        NaN are unknown.
+
+        Raises:
+            MessageError: the message lacks a number, or is no such picture (a ValueError).
+        """
+        if self.image is None:
+            return super().value(message)
+        if self.type == IMAGES[1]:
+            message = pictures.decompress(message)
+        pixels = pixels_of(message, self.image)
+        if pixels.shape != self.shape:
+            raise MessageError(
+                f"{self.topic}: picture",
+                f"{pixels.shape[1]} by {pixels.shape[0]} pixels; the contract has {self.width} by "
+                f"{self.height}",
+            )
+        return pixels
+
+
+class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A topic that a policy commands.
+
+    Attributes:
+        lower: The least value of each number, or one for all; without it, none.
+        upper: The greatest value of each number, or one for all.
+        stop: What stops the robot: ``zero`` in all numbers, ``hold`` for the last command again,
+            or the fields of a message.
+        template: The other fields of the message, such as ``{header: {frame_id: base}}``.
+        lease_sec: How long after the last command the stop is sent.
+    """
+
+    stop: Literal["zero", "hold"] | dict[str, Any]
+    lower: float | tuple[float, ...] = -math.inf
+    upper: float | tuple[float, ...] = math.inf
+    template: dict[str, Any] = {}
+    lease_sec: float = 0.3
+
+    def __post_init__(self) -> None:
+        """Check the entry, its limits and its messages."""
+        super().__post_init__()
+        for name, limit in (("lower", self.lower), ("upper", self.upper)):
+            if isinstance(limit, tuple) and len(limit) != len(self.paths):
+                raise ValueError(f"{name}: {len(limit)} limits for {len(self.paths)} numbers")
+        if not np.all(self.limits[0] <= self.limits[1]):
+            raise ValueError("lower: greater than upper, or no number")
+        if not (math.isfinite(self.lease_sec) and self.lease_sec > 0):
+            raise ValueError(f"lease_sec: {self.lease_sec:g}; a number of seconds fits")
+        for name, make in (("template", self.zero), ("stop", self.stop_message)):
+            try:
+                make()
+            except (MessageError, KeyError, TypeError, AttributeError) as error:
+                raise ValueError(f"{name}: {error}") from None
+
+    @property
+    def is_interpolated(self) -> bool:
+        """Whether a value between two messages is computed from both."""
+        return self.resample == "interpolate"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of a value."""
+        return (len(self.paths),)
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each number."""
+        lower, upper = (
+            np.broadcast_to(np.array(limit, np.float64), self.shape)
+            for limit in (self.lower, self.upper)
+        )
+        return lower, upper
+
+    def clamped(self, values: Array) -> tuple[Array, int]:
+        """Return values within the limits, and how many of them were not.
+
+        Raises:
+            ContractError: they are not as many as the numbers, or not finite (a ValueError).
+        """
+        given = np.asarray(values, np.float64)
+        if given.shape != self.shape or not np.isfinite(given).all():
+            raise ContractError(
+                self.topic,
+                self.feature,
+                f"{escaped(str(given)[:200])}; {len(self.paths)} finite numbers fit: "
+                f"{', '.join(self.labels[:20])}",
+            )
+        inside = np.clip(given, *self.limits)
+        return inside, int((inside != given).sum())
+
+    def message(self, values: Array, stamp: Any = None) -> Any:
+        """Return the message that commands values, which are clamped to the limits.
+
+        Args:
+            values: One number for each name.
+            stamp: The time for the header, a ``builtin_interfaces/msg/Time``, if it has one.
+
+        Raises:
+            ContractError: they are not as many as the numbers, or not finite (a ValueError).
+        """
+        inside, _ = self.clamped(values)
+        return self.stamped(self.filled(inside.tolist()), stamp)
+
+    def zero(self) -> Any:
+        """Return the message with zero in all numbers, whatever the limits."""
+        return self.filled([0.0] * len(self.paths))
+
+    def stop_message(self, last: Any = None) -> Any:
+        """Return the message that stops the robot.
+
+        Args:
+            last: The last command, which ``stop: hold`` sends again; None if there was none: then
+                there is nothing to hold, and the result is None.
+        """
+        if self.stop == "hold":
+            return last
+        return self.zero() if self.stop == "zero" else from_builtins(self.message_type, self.stop)
+
+    def filled(self, values: list[float]) -> Any:
+        """Return a message of the template with values."""
+        return filled(self.message_type, self.paths, values, self.template)
+
+    def stamped(self, message: Any, stamp: Any) -> Any:
+        """Put a time into the header of a message that has one."""
+        if stamp is not None and self.has_header:
+            message.header.stamp = stamp
+        return message
+
+
+def pixels_of(message: Any, kind: str) -> Array:
+    """Return the pixels of an Image: uint8 colours or greys, or float32 depths in metres.
+
+    Raises:
+        MessageError: it cannot be shown so (a ValueError).
+    """
+    encoding = {"color": "rgb8", "mono": "mono8", "depth": "passthrough"}[kind]
+    try:
+        pixels = pictures.to_numpy(message, encoding)
+    except MessageError:
+        raise
+    except ValueError as error:
+        raise MessageError("sensor_msgs/msg/Image.encoding", str(error)) from error
+    if kind != "depth":
+        return pixels
+    if pixels.ndim != 2 or pixels.dtype.kind not in "uf":
+        problem = f"{message.encoding!r}; 16UC1 and 32FC1 fit for depths"
+        raise MessageError("sensor_msgs/msg/Image.encoding", problem)
+    scale = np.float32(0.001 if pixels.dtype.kind == "u" else 1.0)
+    return pixels.astype(np.float32) * scale
