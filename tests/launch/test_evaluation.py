@@ -328,7 +328,7 @@ def test_parameter_files_are_handed_over_or_read_for_a_component(
     )
 
     folder = str(files.folder)
-    assert records[0]["log"] == "no parameter file /nope.yaml: the node starts without"
+    assert records[0]["log"] == "there is no parameter file /nope.yaml: the node starts without it"
     assert records[1]["argv"][4:] == [
         "--params-file", f"{folder}/a.yaml", "-p", "shared:=5",
         "--params-file", {"eye": {"ros__parameters": {"robot": "r1"}}},
@@ -415,9 +415,9 @@ def test_a_bad_file_is_one_error_with_its_line(files: Files, text: str) -> None:
 BAD_ENTITIES = {
     "ExecuteProcess(cmd=['a', LaunchConfiguration('nope')])": "'nope' does not exist here",
     "Node(package='nope', executable='x')": "nope",
-    "DeclareLaunchArgument('x')": "'x' is needed and has no default; add x:=VALUE",
-    "DeclareLaunchArgument('x', default_value='c', choices=['a', 'b'])": "these fit: a, b",
-    "ExecuteProcess(cmd=['a'], condition=IfCondition('maybe'))": "true, 1, false and 0 fit",
+    "DeclareLaunchArgument('x')": "'x' is required and has no default; add x:=VALUE",
+    "DeclareLaunchArgument('x', default_value='c', choices=['a', 'b'])": "use one of a, b",
+    "ExecuteProcess(cmd=['a'], condition=IfCondition('maybe'))": "use true, 1, false or 0",
     "Node(executable='n', parameters=[{'a': []}])": "parameter 'a'",
     "Node(executable='n', name='no/name')": "no/name",
     "IncludeLaunchDescription('missing.launch.py')": "missing.launch.py",
@@ -428,9 +428,9 @@ BAD_ENTITIES = {
     "RegisterEventHandler(OnProcessExit(on_exit=[Node(package='nope', executable='')]))": "nope",
     "TimerAction(period=1.0, actions=[LogInfo(msg=LaunchConfiguration('nope'))])": "'nope' does",
     "ExecuteProcess(cmd=['a'], sigterm_timeout='x')": "sigterm_timeout: 'x' is not a float",
-    "ForLoop('x', function=print)": "length is 'x'; a whole number fits",
-    "ForEach('[a]', function=print)": "'[a]' is no set of values",
-    "OpaqueCoroutine(coroutine=print)": "an async function fits",
+    "ForLoop('x', function=print)": "length is 'x'; use a whole number",
+    "ForEach('[a]', function=print)": "'[a]' is not a set of values",
+    "OpaqueCoroutine(coroutine=print)": "use an async function",
     "OpaqueFunction(function=lambda context: context.asyncio_loop)": "no running event loop",
     "5": "5",
 }
@@ -514,7 +514,9 @@ def test_a_missing_xacro_has_its_remedy(
     """Most descriptions of robots need it, and it is one extra away."""
     monkeypatch.setattr("shutil.which", lambda name, path: None)
 
-    with pytest.raises(LaunchFileError, match=r"'xacro' not found .* 'aionode\[xacro\]' brings it"):
+    with pytest.raises(
+        LaunchFileError, match=r"'xacro' not found .* 'aionode\[xacro\]' installs it"
+    ):
         files.python(f"LogInfo(msg={action})")
 
 

@@ -118,7 +118,7 @@ BAD_XML = {
     '<launch><node exec="$(var x"/></launch>': (1, "')' is missing"),
     '<launch><node exec="a"><param name="b"/></node></launch>': (1, "'param' needs 'value'"),
     '<launch><node exec="a" if="1" unless="1"/></launch>': (1, "one of them fits"),
-    '<launch>\n<executable cmd="$(for-var x)"/></launch>': (2, "no loop around this has 'x'"),
+    '<launch>\n<executable cmd="$(for-var x)"/></launch>': (2, "no enclosing loop has 'x'"),
     '<launch>\n<for len="0" name="i"><nod/></for></launch>': (2, "'nod' is not an action"),
     "<launch>\n</lunch>": (2, "not valid XML: mismatched tag"),
     "<robot/>": (1, "begins with 'robot'; 'launch' fits"),

@@ -121,7 +121,7 @@ def test_a_result_of_another_class_is_refused(
     client: Any = ActionClient(node, Fibonacci, "count")
 
     wait(wait(client.send_goal_async(Fibonacci.Goal())).get_result_async())
-    assert problems == ["the result of a goal is a str; give a Result of its action"]
+    assert problems == ["the result of a goal is a str; use a Result of its action"]
 
 
 @pytest.mark.parametrize("place", ["instance", "class", "handle"])

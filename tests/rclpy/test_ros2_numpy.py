@@ -209,7 +209,7 @@ def test_what_has_no_converter_is_refused() -> None:
         ros2_numpy.numpify(String())
     with pytest.raises(ValueError, match="empty"):
         ros2_numpy.numpify([])
-    with pytest.raises(ValueError, match="String cannot be made"):
+    with pytest.raises(ValueError, match="String cannot be created"):
         ros2_numpy.msgify(String, np.zeros(3))
 
 

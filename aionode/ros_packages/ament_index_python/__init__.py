@@ -1,4 +1,4 @@
-"""The package that programs import as `ament_index_python`: finding installed packages."""
+"""Programs import this as `ament_index_python`: it finds installed packages."""
 
 from __future__ import annotations
 

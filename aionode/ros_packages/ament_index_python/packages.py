@@ -1,4 +1,4 @@
-"""Finds packages: those of the workspace, and the installed ones."""
+"""Finds packages: those of the workspace, and installed ones."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def get_package_prefix(package_name: str) -> str:
-    """Return the folder into which a package was installed; its source folder in a workspace.
+    """Return the folder into which a package was installed; in a workspace, its source folder.
 
     Raises:
-        PackageNotFoundError: There is no such package; the error says what is close.
+        PackageNotFoundError: There is no such package; the error suggests similar names.
         ValueError: Its name is not valid.
     """
     source = checked(package_name).sources().get(package_name)
@@ -49,8 +49,8 @@ def get_package_prefix(package_name: str) -> str:
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
     """Return the folder with the data of a package, with a warning if it does not exist.
 
-    Of a package of the workspace, which needs no build, that is its source folder, or one of links
-    if its rules put files elsewhere.
+    For a package of the workspace, which needs no build, this is its source folder, or a folder of
+    links if its rules install files elsewhere.
     """
     packages = checked(package_name)
     is_source = package_name in packages.sources()
@@ -74,14 +74,14 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
 
 
 def checked(package_name: str) -> Packages:
-    """Return the packages that are known, if the name of one is valid."""
+    """Return the known packages, if the name of one is valid."""
     if not PACKAGE_NAME.fullmatch(package_name):
         raise ValueError(f"'{package_name}' is not a valid package name")
     return here()
 
 
 def installed(package_name: str) -> Path:
-    """Return the folder into which a package was installed, by ROS's tools or by pip."""
+    """Return the folder into which ROS's tools or pip installed a package."""
     try:
         return here().prefix(package_name)
     except errors.PackageNotFoundError as error:

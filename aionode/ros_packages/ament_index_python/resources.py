@@ -1,7 +1,8 @@
 """The resources of packages: marker files of which only the names matter.
 
-A package of the workspace has the resource that says that it is there, as if it were installed into
-its source folder. After the folders of AMENT_PREFIX_PATH comes Python's own, for what pip installs.
+A package of the workspace has the resource that marks its presence, as if it were installed into
+its source folder. Python's own prefix, where pip installs, is searched after the folders of
+AMENT_PREFIX_PATH.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ __all__ = [
 
 
 PACKAGES: Final = "packages"
-"""The type of the resource that each package has: a file of its name."""
+"""The type of the resource that each package has: a file with its name."""
 
 
 class InvalidResourceTypeNameError(ValueError):
@@ -41,12 +42,12 @@ class InvalidResourceNameError(ValueError):
 
 
 def searched() -> list[str]:
-    """Return the folders that may have an index: those of ROS, if any, then Python's own."""
+    """Return the folders that may contain an index: those of ROS, if any, then Python's own."""
     return [*(get_search_paths() if os.environ.get(AMENT_PREFIX_PATH_ENV_VAR) else ()), sys.prefix]
 
 
 def folders(resource_type: str) -> list[tuple[str, Path]]:
-    """Return the prefixes that may have resources of a type, and the folders with them."""
+    """Return the prefixes that may contain resources of a type, each with its folder."""
     if not resource_type:
         raise AssertionError("The resource type must not be empty")
     if "/" in resource_type or "\\" in resource_type:
@@ -72,7 +73,7 @@ def find(resource_type: str, resource_name: str) -> tuple[str, Path | None] | No
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """Return the content of a resource, and the prefix where it is.
+    """Return the content of a resource, and its prefix.
 
     Raises:
         LookupError: There is no such resource.
@@ -88,7 +89,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | Literal[False]:
-    """Return the prefix where a resource is, or False."""
+    """Return the prefix that contains a resource, or False."""
     resource = find(resource_type, resource_name)
     return resource[0] if resource else False
 

@@ -1,4 +1,4 @@
-"""Images of one encoding in another; `cv2` is imported only for what numpy would not do alike."""
+"""Converts images between encodings; `cv2` is imported only where numpy would differ from it."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ CODES: Final = {"yuv422": "YUV2{}_UYVY", "yuv422_yuy2": "YUV2{}_YUY2"}
 """OpenCV's names for conversions from YUV."""
 
 BAYER: Final = {"rggb": "BG", "bggr": "RG", "gbrg": "GR", "grbg": "GB"}
-"""OpenCV's names for Bayer patterns, which go by the second row and column."""
+"""OpenCV's names for Bayer patterns, which are based on the second row and column."""
 
 
 def cvtColor2(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:
-    """Return an image in another encoding, with values of another depth where that differs.
+    """Return an image in another encoding, converting the depth of its values if it differs.
 
     Args:
         image: The pixels.
@@ -73,7 +73,7 @@ def is_possible(source: str, wanted: str) -> bool:
 
 
 def with_colour(image: Pixels, source: str, wanted: str) -> Pixels:
-    """Return an image with other colours, and values as they are."""
+    """Return an image with converted colours, and unchanged depth."""
     if source == "mono":
         colours = np.stack([image] * 3, axis=-1)
         return with_alpha(colours) if wanted.endswith("a") else colours
@@ -93,13 +93,13 @@ def with_colour(image: Pixels, source: str, wanted: str) -> Pixels:
 
 
 def with_alpha(colours: Pixels) -> Pixels:
-    """Return an image with a fourth channel, of the highest value."""
+    """Return an image with a fourth channel, at its maximum."""
     highest = np.full((*colours.shape[:2], 1), np.iinfo(colours.dtype).max, colours.dtype)
     return np.concatenate([colours, highest], axis=-1)
 
 
 def with_depth(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:
-    """Return an image with values of another type; 8 and 16 bits are scaled to one another."""
+    """Return an image with values of another type; 8 and 16 bits are scaled to each other."""
     dtype = np.dtype(dtype_of(encoding_out))
     depths = bit_depth(encoding_in), bit_depth(encoding_out)
     factor = {(8, 16): 65535 / 255, (16, 8): 255 / 65535}.get(depths, 1.0)
@@ -109,7 +109,7 @@ def with_depth(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:
 
 
 def saturated(values: Pixels, dtype: np.dtype[Any]) -> Pixels:
-    """Return values in another type: integers rounded, and as near as the type has them."""
+    """Return values in another type: integers are rounded, and clamped to its range."""
     if dtype.kind == "f":
         return values.astype(dtype)
     limits = np.iinfo(dtype)
@@ -131,7 +131,7 @@ def cvtColorForDisplay(  # cv_bridge's name
 
     Args:
         source: The pixels.
-        encoding_in: Their encoding; 32SC1 are labels, of which each gets a colour, 0 black.
+        encoding_in: Their encoding; in 32SC1 each value is a label with its own colour, 0 black.
         encoding_out: A colour or grey of 8 bits; bgr8 if it is empty.
         do_dynamic_scaling: Scale the lowest value to 0, and the highest to 255.
         min_image_value: Scale this value to 0 …
@@ -175,8 +175,9 @@ def cvtColorForDisplay(  # cv_bridge's name
 
 
 def coloured_labels(labels: Pixels) -> Pixels:
-    """Return an image in which equal labels have equal colours, neighbours different, 0 black."""
-    # Each bit of a label goes to one of the three colours, the lowest to its highest bit.
+    """Return an image with one colour per label: neighbours differ, 0 is black."""
+    # The bits of a label are distributed over the three colours, the lowest to the highest bit of a
+    # colour.
     number = labels.astype(np.int64)
     colours = np.zeros((*labels.shape, 3), np.uint8)
     for bit in range(24):

@@ -1,4 +1,4 @@
-"""The encodings of images: what OpenCV's type is, and what the channels mean."""
+"""The encodings of images: their OpenCV types, and the meaning of their channels."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NOT_OF_CV_BRIDGE: Final = ("uyvy", "yuyv")
 
 
 def pixel_of(encoding: str) -> tuple[np.dtype[Any], int]:
-    """Return the type of a channel, and their number.
+    """Return the type of a channel, and the number of channels.
 
     Raises:
         RuntimeError: The encoding is unknown.
@@ -36,13 +36,13 @@ def pixel_of(encoding: str) -> tuple[np.dtype[Any], int]:
     try:
         if encoding not in NOT_OF_CV_BRIDGE:
             return encoding_of(encoding)
-    except MessageError:  # cv_bridge has a text of its own
+    except MessageError:  # cv_bridge has its own text
         pass
     raise RuntimeError(f"Unrecognized image encoding [{encoding}]")
 
 
 def cv_type(depth: int, channels: int) -> int:
-    """Return the number that OpenCV has for a type."""
+    """Return OpenCV's number for a type."""
     return depth + ((channels - 1) << 3)
 
 
@@ -59,7 +59,7 @@ def type_name(dtype_name: str, channels: int) -> str:
 
 
 def getCvType(encoding: str) -> int:  # cv_bridge's name
-    """Return the number that OpenCV has for the type of an encoding.
+    """Return OpenCV's number for the type of an encoding.
 
     Raises:
         RuntimeError: The encoding is unknown.
@@ -96,7 +96,7 @@ def dtype_of(encoding: str) -> str:
 
 
 def colour_of(encoding: str) -> str:
-    """Return what the channels mean, such as ``bgr`` or ``bayer_rggb``; empty if nothing."""
+    """Return the meaning of the channels, such as ``bgr`` or ``bayer_rggb``; empty without one."""
     match = COLOURS.fullmatch(encoding)
     if match is not None:
         return match[1]

@@ -1,4 +1,4 @@
-"""Images of OpenCV, which are numpy arrays, to and from messages."""
+"""Converts OpenCV images, which are numpy arrays, to and from messages."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class CvBridge:
     """Converts images.
 
     Attributes:
-        cvtype_to_name: OpenCV's names of its types by their numbers.
-        cvdepth_to_numpy_depth: numpy's names of types by the numbers of OpenCV's depths.
-        numpy_type_to_cvtype: OpenCV's names of depths by numpy's, and the other way round.
+        cvtype_to_name: OpenCV's names of its types, by their numbers.
+        cvdepth_to_numpy_depth: numpy's names of types, by the numbers of OpenCV's depths.
+        numpy_type_to_cvtype: OpenCV's names of depths by numpy's names, and vice versa.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class CvBridge:
         return type_name(dtype.name, n_channels)
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
-        """Return numpy's name for the type of a channel, and their number."""
+        """Return numpy's name for the type of a channel, and the number of channels."""
         return self.cvdepth_to_numpy_depth[cvtype & 7], (cvtype >> 3) + 1
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
@@ -67,7 +67,7 @@ class CvBridge:
             raise CvBridgeError(error) from error
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return numpy's name for the type of a channel of an encoding, and their number.
+        """Return numpy's name for an encoding's channel type, and the number of channels.
 
         Raises:
             CvBridgeError: The encoding is unknown.
@@ -79,14 +79,15 @@ class CvBridge:
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = PASSTHROUGH) -> Pixels:
         """Return the pixels of a message: rows, columns, and channels if there are several.
 
-        They are over the bytes of the message if nothing is converted and rows have no padding.
+        They share the bytes of the message if nothing is converted and rows have no padding.
 
         Args:
             img_msg: A sensor_msgs/msg/Image.
-            desired_encoding: Their encoding, such as bgr8; ``passthrough`` for that of the message.
+            desired_encoding: The encoding to return, such as bgr8; ``passthrough`` for the
+                message's.
 
         Raises:
-            CvBridgeError: The encodings are unknown, or do not fit.
+            CvBridgeError: An encoding is unknown, or the two cannot be converted.
             TypeError: The message has less data than its size needs.
             ModuleNotFoundError: The conversion needs `cv2`, which is not installed.
         """
@@ -112,14 +113,14 @@ class CvBridge:
 
         Args:
             cvim: The pixels.
-            encoding: What their channels are, such as bgr8; nothing is converted. ``passthrough``
-                stands for OpenCV's type, such as 8UC3.
+            encoding: The meaning of the channels, such as bgr8; nothing is converted.
+                ``passthrough`` stands for OpenCV's type, such as 8UC3.
             header: The header of the message.
 
         Raises:
-            CvBridgeError: The encoding is unknown, or does not fit the type of the image.
+            CvBridgeError: The encoding is unknown, or does not match the type of the image.
             KeyError: OpenCV has no such type.
-            TypeError: `cvim` is no array of numpy.
+            TypeError: `cvim` is not a numpy array.
         """
         check_is_array(cvim)
         channels = 1 if cvim.ndim < 3 else cvim.shape[2]
@@ -145,14 +146,15 @@ class CvBridge:
     def compressed_imgmsg_to_cv2(
         self, cmprs_img_msg: Any, desired_encoding: str = PASSTHROUGH
     ) -> Pixels:
-        """Return the pixels of a compressed image, which are grey, BGR or BGRA as it has them.
+        """Return the pixels of a compressed image: grey, BGR or BGRA, as in the file.
 
         Args:
             cmprs_img_msg: A sensor_msgs/msg/CompressedImage.
             desired_encoding: The encoding to which they are converted, such as rgb8.
 
         Raises:
-            CvBridgeError: The encoding is unknown, or does not fit; or the data is no image.
+            CvBridgeError: The encoding is unknown, or conversion is impossible; or the data is not
+                an image.
             ModuleNotFoundError: `cv2` is not installed.
         """
         import cv2
@@ -161,10 +163,10 @@ class CvBridge:
         pixels: Pixels | None = cv2.imdecode(packed, cv2.IMREAD_UNCHANGED) if packed.size else None
         if pixels is None:
             raise CvBridgeError(
-                f"{packed.size} bytes of the format {cmprs_img_msg.format!r} are no image that "
-                "OpenCV can read"
+                f"{packed.size} bytes of the format {cmprs_img_msg.format!r} are not an "
+                "image that OpenCV can read"
             )
-        if desired_encoding == "bgr8":  # whatever it has is taken for that
+        if desired_encoding == "bgr8":  # unknown data is assumed to be in that encoding
             return pixels
         return self._converted(pixels, encoding_of(pixels), desired_encoding)
 
@@ -173,10 +175,10 @@ class CvBridge:
 
         Args:
             cvim: The pixels: grey, BGR or BGRA.
-            dst_format: The ending of a file of the format, such as jpg or png.
+            dst_format: The file extension of the format, such as jpg or png.
 
         Raises:
-            TypeError: `cvim` is no array of numpy.
+            TypeError: `cvim` is not a numpy array.
             ModuleNotFoundError: `cv2` is not installed.
             cv2.error: OpenCV does not know the format, or cannot write such an image in it.
         """
@@ -197,12 +199,12 @@ class CvBridge:
 
 
 def check_is_array(image: Any) -> None:
-    """Raise TypeError if an image is no array of numpy."""
+    """Raise TypeError if an image is not a numpy array."""
     if not isinstance(image, np.ndarray | np.generic):
         raise TypeError("Your input type is not a numpy array")
 
 
 def encoding_of(pixels: Pixels) -> str:
-    """Return the encoding of what OpenCV has read from a file."""
+    """Return the encoding of an image that OpenCV has read from a file."""
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     return f"{ {1: 'mono', 4: 'bgra'}.get(channels, 'bgr') }{pixels.dtype.itemsize * 8}"

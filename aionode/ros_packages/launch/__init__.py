@@ -1,4 +1,4 @@
-"""The package that launch files import as `launch`: ROS 2's names, evaluated into a plan."""
+"""Launch files import this as `launch`: ROS 2's names, evaluated into a plan."""
 
 from __future__ import annotations
 

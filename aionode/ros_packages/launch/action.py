@@ -1,4 +1,4 @@
-"""`launch.action`: what a description does."""
+"""`launch.action`: the actions of a description."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ __all__ = ["Action"]
 
 
 class Action(LaunchDescriptionEntity):
-    """A thing to be done, unless its condition is false."""
+    """An action, executed unless its condition is false."""
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         if condition is not None and not isinstance(condition, Condition):
             raise TypeError(
-                f"{type(self).__name__}: condition= is {condition!r}, and not a condition; "
-                "launch.conditions has them, such as IfCondition('true')"
+                f"{type(self).__name__}: condition= is {condition!r}, which is not a "
+                "condition; use one of launch.conditions, such as IfCondition('true')"
             )
         self._Action__condition = condition
 
@@ -31,7 +31,7 @@ class Action(LaunchDescriptionEntity):
         return self._Action__condition
 
     def visit(self, context: LaunchContext) -> Any:
-        """Do it if the condition holds."""
+        """Execute the action if its condition holds."""
         if self._Action__condition is not None and not self._Action__condition.evaluate(context):
             return None
         entities = self.execute(context)
@@ -39,5 +39,5 @@ class Action(LaunchDescriptionEntity):
         return entities
 
     def execute(self, context: LaunchContext) -> Any:
-        """Do it, and return further entities or None."""
+        """Execute the action, and return further entities or None."""
         return None

@@ -1,4 +1,4 @@
-"""`launch.event`: what happens while a system runs."""
+"""`launch.event`: events while a system runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`launch.event_handler`: what is done when something happens."""
+"""`launch.event_handler`: reactions to events."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def entities_of(result: Any) -> list[LaunchDescriptionEntity]:
 
 
 class BaseEventHandler:
-    """Decides which events it handles, and what is done then.
+    """Decides which events it handles, and how it reacts.
 
     Args:
-        matcher: Says whether an event concerns it.
+        matcher: Returns whether it handles an event.
         handle_once: Whether it handles one event only.
         reaction: Entities; or a function of the event and the context, which returns some.
     """
@@ -54,7 +54,7 @@ class BaseEventHandler:
         return bool(self._BaseEventHandler__matcher(event))
 
     def handle(self, event: Event, context: LaunchContext) -> Any:
-        """Handle the event, and return the entities that are to be done, or None."""
+        """Handle the event, and return the entities to execute, or None."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -65,16 +65,16 @@ class BaseEventHandler:
         )
 
     def _BaseEventHandler__known_entities(self) -> list[LaunchDescriptionEntity] | None:
-        """Return the entities that are done at any event; None if a function decides."""
+        """Return the entities executed for any event; None if a function decides."""
         return self._BaseEventHandler__entities
 
     def describe(self) -> str:
-        """Return to what it reacts, such as ``exit of talker-1``."""
+        """Return the event that it reacts to, such as ``exit of talker-1``."""
         return f"an event of {type(self).__name__}"
 
 
 class EventHandler(BaseEventHandler):
-    """Does the same things at each event that fits."""
+    """Executes the same entities at each matching event."""
 
     def __init__(
         self, *, matcher: Callable[[Event], bool], entities: Any = None, handle_once: bool = False
@@ -83,5 +83,5 @@ class EventHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity] | None:
-        """The actions that the event starts."""
+        """The actions that the event triggers."""
         return self._BaseEventHandler__entities

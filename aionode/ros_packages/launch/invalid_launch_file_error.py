@@ -8,11 +8,11 @@ __all__ = ["InvalidLaunchFileError"]
 
 
 class InvalidLaunchFileError(Exception):
-    """A launch file that a program has asked for cannot be read.
+    """A launch file requested by a program cannot be read.
 
     Args:
-        extension: The ending of its name, without the dot.
-        likely_errors: What has gone wrong.
+        extension: The extension of its name, without the dot.
+        likely_errors: The errors that occurred.
     """
 
     def __init__(self, extension: str = "", *, likely_errors: Sequence[Exception] = ()) -> None:

@@ -15,16 +15,16 @@ __all__ = ["KnownLater", "LaunchContext"]
 
 
 class KnownLater(Exception):  # noqa: N818  # no error
-    """A value is known only when the entity is really done: something may have changed by then."""
+    """A value is known only when the entity is actually executed: it may have changed by then."""
 
 
 def cannot_load(path: str, kind: str) -> Any:
-    """Refuse to load a file: only an evaluation can."""
+    """Refuse to load a file, which only an evaluation can do."""
     raise NotImplementedError(f"{path}: this context does not read launch files")
 
 
 class Unknown:
-    """Stands for what is known only when it happens: an event, and what belongs to it."""
+    """Stands for a value known only at run time: an event, and everything that belongs to it."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -37,10 +37,10 @@ class Unknown:
 
 
 class LaunchContext:
-    """The launch configurations and the environment; and the steps that have been found.
+    """The launch configurations, the environment, and the steps found so far.
 
     The environment is a copy: nothing changes that of this process. Substitutions, events and
-    handlers know this class, so it does not know theirs.
+    handlers depend on this class, so it does not depend on them.
     """
 
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
@@ -54,29 +54,30 @@ class LaunchContext:
         self.load_file: Callable[[str, str], Any] = cannot_load
         """Returns the description in a file of this path and kind: python, xml, yaml or any."""
         self.packages = Packages()
-        """The packages in which executables and files are looked up."""
+        """The packages in which executables and files are searched."""
         self.declared: set[str] = set()
         """The arguments that have been declared."""
         self.left_out: dict[str, list[Any]] | None = None
-        """The entities that were skipped, by missing package; None if that is an error."""
+        """The entities skipped because of a missing package; None if a missing package is an
+        error."""
         self.ahead = False
-        """Whether what is evaluated is done later."""
+        """Whether the entities being evaluated are executed later."""
         self.visited = 0
         """Number of entities visited by the current evaluation."""
         self.names: dict[str, int] = {}
-        """The number of processes that each name had so far."""
+        """The number of processes with each name so far."""
         self._configurations: list[dict[str, Any]] = []
         self._environments: list[dict[str, str]] = []
         self._locals: list[dict[str, Any]] = []
 
     def fork(self, *, ahead: bool = False) -> Self:
-        """Return a context with no steps, for what is done later.
+        """Return a context without steps, for entities that are executed later.
 
-        It has its state in common with this one, so that it sees what is declared and set in the
-        same scope meanwhile.
+        It shares its state with this one, so that it sees later declarations and settings in the
+        same scope.
 
         Args:
-            ahead: Whether that is evaluated before its time, to find what is wrong with it.
+            ahead: Whether they are evaluated in advance, to find mistakes.
         """
         later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
         later.launch_configurations = self.launch_configurations
@@ -88,7 +89,7 @@ class LaunchContext:
         later.declared = self.declared
         later.left_out = self.left_out
         later.ahead = ahead or self.ahead
-        if ahead:  # it changes nothing for those that are done
+        if ahead:  # it changes nothing for entities that are executed
             later.launch_configurations = dict(self.launch_configurations)
             later.environment = dict(self.environment)
             later.locals.event = Unknown("event")
@@ -108,14 +109,14 @@ class LaunchContext:
         return str(sub.perform(self))
 
     def extend_locals(self, extensions: Mapping[str, Any]) -> None:
-        """Add values that the following entities find in `locals`."""
+        """Add values that later entities find in `locals`."""
         vars(self.locals).update(extensions)
 
     def need_present(self, what: str) -> None:
-        """Give up if this is evaluated before its time.
+        """Give up if this is evaluated in advance.
 
         Raises:
-            KnownLater: It is.
+            KnownLater: It is evaluated in advance.
         """
         if self.ahead:
             raise KnownLater(what)
@@ -125,29 +126,29 @@ class LaunchContext:
         return dict(vars(self.locals))
 
     def push_locals(self) -> None:
-        """Remember the values in `locals` until the matching pop."""
+        """Save the values in `locals` until the matching pop."""
         self._locals.append(self.get_locals_as_dict())
 
     def pop_locals(self) -> None:
-        """Restore what the matching push remembered."""
+        """Restore the values that the matching push saved."""
         self.locals = SimpleNamespace(**self._locals.pop())
 
     def push_launch_configurations(self) -> None:
-        """Remember the launch configurations until the matching pop."""
+        """Save the launch configurations until the matching pop."""
         self._configurations.append(self.launch_configurations)
         self.launch_configurations = dict(self.launch_configurations)
 
     def pop_launch_configurations(self) -> None:
-        """Restore what the matching push remembered."""
+        """Restore the launch configurations that the matching push saved."""
         self.launch_configurations = self._configurations.pop()
 
     def push_environment(self) -> None:
-        """Remember the environment until the matching pop."""
+        """Save the environment until the matching pop."""
         self._environments.append(self.environment)
         self.environment = dict(self.environment)
 
     def pop_environment(self) -> None:
-        """Restore what the matching push remembered."""
+        """Restore the environment that the matching push saved."""
         self.environment = self._environments.pop()
 
     def reset_environment(self) -> None:
@@ -164,14 +165,14 @@ class LaunchContext:
         self.steps.append(Watch(handler=event_handler, context=self.fork(), ends=True))
 
     def emit_event_sync(self, event: Any) -> None:
-        """Hand an event to the handlers."""
+        """Pass an event to the handlers."""
         self.steps.append(Emit(event=event))
 
     async def emit_event(self, event: Any) -> None:
-        """Hand an event to the handlers."""
+        """Pass an event to the handlers."""
         self.emit_event_sync(event)
 
     def unique_name(self, name: str) -> str:
-        """Return the name of one more process: the name and a number, as ros2 launch does."""
+        """Return a name for one more process: the name and a number, as in ros2 launch."""
         number = self.names[""] = self.names.get("", 0) + 1
         return f"{name}-{number}"

@@ -14,7 +14,7 @@ __all__ = ["LaunchDescription"]
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """A list of what is done, in order."""
+    """A list of entities, executed in order."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""`launch.launch_description_entity`: what a launch description consists of."""
+"""`launch.launch_description_entity`: the elements of a launch description."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ class LaunchDescriptionEntity:
     """A part of a launch description."""
 
     _LaunchDescriptionEntity__where: str
-    """The file and line where the program made it."""
+    """The file and line where the program created it."""
 
     def __new__(cls, *_args: Any, **_options: Any) -> Self:
-        """Make an entity that knows its place in the user's file."""
+        """Create an entity that knows its place in the user's file."""
         entity = super().__new__(cls)
         frame = sys._getframe(1)
         entity._LaunchDescriptionEntity__where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
         return entity
 
     def visit(self, context: LaunchContext) -> Any:
-        """Do what the entity is for, and return further entities or None."""
+        """Execute the entity, and return further entities or None."""
         return None
 
     def describe(self) -> str:
-        """Return what it is."""
+        """Return a description of the entity."""
         return type(self).__name__
 
     def get_asyncio_future(self) -> None:
-        """Return None: the engine knows what runs."""
+        """Return None: the engine tracks what is running."""

@@ -22,7 +22,7 @@ __all__ = [
 
 
 def indent(lines: Iterable[str], indention: str = "    ") -> list[str]:
-    """Return lines, each with something before it."""
+    """Return lines with a prefix before each."""
     return [f"{indention}{line}" for line in lines]
 
 
@@ -37,7 +37,7 @@ def format_entities(entities: Iterable[LaunchDescriptionEntity]) -> list[str]:
 
 
 def format_event_handler(event_handler: BaseEventHandler) -> list[str]:
-    """Return the lines of an event handler, and of what it does as far as that is known."""
+    """Return the lines of an event handler, and of its actions as far as they are known."""
     known = event_handler._BaseEventHandler__known_entities() or []
     head = f"{type(event_handler).__name__}({event_handler.describe()})"
     return [head, *indent(format_entities(known))]

@@ -1,4 +1,4 @@
-"""`launch.LaunchService`: launch descriptions that a program runs itself."""
+"""`launch.LaunchService`: launch descriptions run by a program."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["LaunchService"]
 
 
 class LaunchService:
-    """Runs launch descriptions, until nothing of them runs any more."""
+    """Runs launch descriptions, until nothing of them is running."""
 
     def __init__(
         self,
@@ -30,7 +30,7 @@ class LaunchService:
         self.included: list[LaunchDescriptionEntity] = []
         """Descriptions that the engine has not processed yet."""
         self.wake: Callable[[], object] = int
-        """Called in the loop's thread when there is something more in `included`."""
+        """Called in the loop's thread when something is added to `included`."""
         self.event_loop: asyncio.AbstractEventLoop | None = None
         self.task: asyncio.Task[Any] | None = None
 
@@ -41,18 +41,18 @@ class LaunchService:
             self.event_loop.call_soon_threadsafe(self.wake)
 
     def emit_event(self, event: Event) -> None:
-        """Hand an event to the handlers; it may be called in any thread."""
+        """Pass an event to the handlers; may be called from any thread."""
         self.include_launch_description(EmitEvent(event=event))
 
     def shutdown(self, force_sync: bool = False) -> None:
-        """Stop everything; it may be called in any thread, and `run` returns later."""
+        """Stop everything; may be called from any thread, and `run` returns afterwards."""
         self.emit_event(Shutdown(reason="LaunchService.shutdown() called"))
 
     def run(self, *, shutdown_when_idle: bool = True) -> int:
         """Run the descriptions, and return 0, or 1 if one of them cannot be evaluated.
 
         Args:
-            shutdown_when_idle: Whether it returns when nothing runs any more; else it waits for
+            shutdown_when_idle: Whether to return when nothing runs any more, rather than wait for
                 `shutdown`.
         """
         from aionode.runner import run
@@ -66,10 +66,10 @@ class LaunchService:
         return status[0] if status else 0
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run the descriptions, as `run` does, in the loop that runs already.
+        """Run the descriptions like `run`, in the loop that is already running.
 
         Raises:
-            RuntimeError: It runs already.
+            RuntimeError: It is already running.
         """
         if self.task is not None:
             raise RuntimeError("LaunchService cannot be run multiple times concurrently.")

@@ -14,7 +14,7 @@ class LaunchConfig:
 
     @property
     def level(self) -> int:
-        """The level from which on messages are shown."""
+        """The minimum level of messages to show."""
         return logging.getLogger("launch").getEffectiveLevel()
 
     @level.setter
@@ -32,5 +32,5 @@ launch_config = LaunchConfig()
 
 
 def get_logger(name: str | None = None) -> logging.Logger:
-    """Return a logger of Python's library, below ``launch``."""
+    """Return a logger of Python's logging module, below ``launch``."""
     return logging.getLogger(f"launch.{name}" if name else "launch")

@@ -1,4 +1,4 @@
-"""`launch.substitution`: texts that are known only when a description is evaluated."""
+"""`launch.substitution`: texts known only when a description is evaluated."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ class SubstitutionFailure(RuntimeError):  # noqa: N818  # launch's name
 
 
 class Substitution:
-    """A text that is known only when the description is evaluated."""
+    """A text known only when the description is evaluated."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text."""
         raise NotImplementedError(f"{type(self).__name__}.perform")
 
     def describe(self) -> str:
-        """Return what stands in the description."""
+        """Return the text of the description."""
         return f"{type(self).__name__}()"
 
     _Substitution__second_word: ClassVar[str] = ""
-    """The name of the argument that the second word of ``$(name word word)`` is, if it has one."""
+    """The name of the argument for the second word of ``$(name word word)``, if it has one."""
 
     @classmethod
     def _Substitution__of_words(cls, *words: Any) -> Self:
-        """Return the substitution that ``$(name word word)`` of a file stands for."""
+        """Return the substitution for ``$(name word word)`` in a file."""
         if cls._Substitution__second_word and len(words) == 2:
             return cls(words[0], **{cls._Substitution__second_word: words[1]})  # type: ignore[call-arg]  # the subclass has it
         return cls(*words)
@@ -63,7 +63,7 @@ class TextSubstitution(Substitution):
 
 
 SomeSubstitutionsType: TypeAlias = str | Substitution | Iterable[Any]
-"""A text, a substitution, or several that are joined."""
+"""A text, a substitution, or several of them to join."""
 
 
 def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Substitution]:

@@ -1,4 +1,4 @@
-"""The package that launch files import as `launch_param_builder`; a workspace's comes first."""
+"""Launch files import this as `launch_param_builder`; a workspace's own takes precedence."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class ParameterBuilder:
         self._parameters: dict[str, Any] = {}
 
     def yaml(self, file_path: str, parameter_namespace: str | None = None) -> Self:
-        """Add those of a YAML file, below a namespace if one is given."""
+        """Add the parameters of a YAML file, below a namespace if one is given."""
         content = load_yaml(self._package_path / file_path)
         if parameter_namespace:
             self._parameters.setdefault(parameter_namespace, {}).update(content)
@@ -40,7 +40,7 @@ class ParameterBuilder:
     def xacro_parameter(
         self, parameter_name: str, file_path: str, mappings: Mapping[str, str] | None = None
     ) -> Self:
-        """Add the XML that xacro makes of a file."""
+        """Add the XML that xacro generates from a file."""
         text = load_xacro(self._package_path / file_path, mappings=mappings)
         return self.parameter(parameter_name, text)
 

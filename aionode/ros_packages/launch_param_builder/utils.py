@@ -31,7 +31,7 @@ class ParameterBuilderFileNotFoundError(KeyError):
 
 
 def raise_if_file_not_found(file_path: Path) -> None:
-    """Raise ParameterBuilderFileNotFoundError if there is no such file."""
+    """Raise ParameterBuilderFileNotFoundError if a file does not exist."""
     if not file_path.exists():
         raise ParameterBuilderFileNotFoundError(f"File {file_path} doesn't exist")
 
@@ -51,7 +51,7 @@ def load_xacro(file_path: Path, mappings: Mapping[str, str] | None = None) -> st
     """Return the XML that xacro generates from a file.
 
     Raises:
-        ModuleNotFoundError: xacro is not installed; the extra ``xacro`` brings it.
+        ModuleNotFoundError: xacro is not installed; the extra ``xacro`` installs it.
     """
     raise_if_file_not_found(file_path)
     xml: str = import_module("xacro").process_file(str(file_path), mappings=mappings).toxml()

@@ -1,4 +1,4 @@
-"""The package that launch files import as `launch_ros`."""
+"""Launch files import this as `launch_ros`."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ __all__ = ["is_absolute", "joined", "namespace_in", "text_or_none"]
 
 
 def joined(base: str | None, namespace: str | None) -> str | None:
-    """Return a namespace within another, without a slash at the end; None if both are None."""
+    """Join two namespaces, without a slash at the end; return None if both are None."""
     if namespace is None:
         combined = base
     elif not base or namespace.startswith("/"):
@@ -38,7 +38,7 @@ def is_absolute(namespace: str) -> bool:
 
 
 def namespace_in(context: LaunchContext, given: str | None) -> str | None:
-    """Return the absolute namespace of a node: what is given, below what groups have pushed.
+    """Return the absolute namespace of a node: the given one, below those pushed by groups.
 
     Raises:
         InvalidNamespaceException: It is not valid.

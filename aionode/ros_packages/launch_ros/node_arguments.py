@@ -27,11 +27,11 @@ __all__ = ["parameter_arguments", "remap_pairs", "values_for_node"]
 
 
 def remap_pairs(context: LaunchContext, remappings: Iterable[Any]) -> list[tuple[str, str]]:
-    """Return remapping rules: those of the group, and those of the node."""
+    """Return remapping rules: those of the group, then those of the node."""
     pairs = list(context.launch_configurations.get("ros_remaps", ()))
     for rule in remappings:
         if isinstance(rule, str):
-            raise TypeError(f"remapping {rule!r}: a pair such as ('from', 'to') fits")
+            raise TypeError(f"remapping {rule!r}: use a pair such as ('from', 'to')")
         source, target = (text_of(context, side) for side in rule)
         pairs.append((source, target))
     return pairs
@@ -40,7 +40,7 @@ def remap_pairs(context: LaunchContext, remappings: Iterable[Any]) -> list[tuple
 def parameter_arguments(
     context: LaunchContext, parameters: Iterable[Any], node_name: str | None
 ) -> list[str | ParameterValues]:
-    """Return the arguments that give a node its parameters, in order: the last one counts."""
+    """Return the arguments for a node's parameters, in order: the last one applies."""
     arguments: list[str | ParameterValues] = []
     for known in context.launch_configurations.get("global_params", ()):
         if isinstance(known, tuple):
@@ -62,8 +62,10 @@ def parameter_arguments(
         elif (package := package_of_stand_in(str(file))) is not None:
             raise PackageNotFoundError(package, (), ())
         else:
-            # ROS's launch goes on, too: files that only some robots have are common.
-            context.steps.append(Log(f"no parameter file {file}: the node starts without", "WARN"))
+            # ROS's launch continues, too: files that only some robots have are common.
+            context.steps.append(
+                Log(f"there is no parameter file {file}: the node starts without it", "WARN")
+            )
     return arguments
 
 
@@ -78,7 +80,7 @@ def file_of(context: LaunchContext, given: Any) -> str | ParameterValues | None:
 def values_for_node(
     context: LaunchContext, parameters: Iterable[Any], name: str, namespace: str
 ) -> dict[str, Any]:
-    """Return the parameters of a node by their names, those of its files included."""
+    """Return the parameters of a node by name, including those of its files."""
     values: dict[str, Any] = {}
     for given in parameters:
         if isinstance(given, Parameter):
@@ -97,7 +99,7 @@ def values_for_node(
 
 
 def values_in_file(content: Mapping[str, Any], name: str, namespace: str) -> dict[str, Any]:
-    """Return what a parameter file has for a node: for all nodes, and then for this one."""
+    """Return a parameter file's values for a node: those for all nodes, then its own."""
     by_node = dict(sections(content))
     own = f"{namespace.strip('/')}/{name}".strip("/")
     parameters: dict[str, Any] = {}
@@ -107,7 +109,7 @@ def values_in_file(content: Mapping[str, Any], name: str, namespace: str) -> dic
 
 
 def sections(content: Mapping[str, Any], path: str = "") -> Iterable[tuple[str, Any]]:
-    """Yield the names of the nodes in a parameter file, and their parameters."""
+    """Yield the node names in a parameter file, with their parameters."""
     for key, value in content.items():
         if key == "ros__parameters":
             yield path.strip("/"), value or {}

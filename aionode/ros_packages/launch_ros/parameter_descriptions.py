@@ -65,7 +65,7 @@ class Parameter:
 
 
 class ParameterFile:
-    """A parameter file, whose texts may have substitutions."""
+    """A parameter file whose texts may contain substitutions."""
 
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
         self.param_file = normalize_to_list_of_substitutions(param_file)
@@ -81,7 +81,7 @@ class ParameterFile:
 
 
 def evaluate_value(context: LaunchContext, value: Any) -> Any:
-    """Return the value that a part of a description stands for: texts of YAML, by its rules.
+    """Return the value of a part of a description; texts follow the rules of YAML.
 
     Raises:
         TypeError: A parameter cannot have this value.
@@ -98,7 +98,7 @@ def evaluate_value(context: LaunchContext, value: Any) -> Any:
             items = [float(item) for item in items]
         return items
     raise TypeError(
-        f"a parameter cannot be {value!r}; bool, int, float, str and lists of one of them fit"
+        f"a parameter cannot be {value!r}; use bool, int, float, str or a list of one of them"
     )
 
 
@@ -111,14 +111,18 @@ def item_of(context: LaunchContext, item: Any) -> Any:
 
 
 def value_of_text(text: str) -> Any:
-    """Return what a text stands for by YAML's rules, if a parameter can have that value."""
-    hint = "ParameterValue(value, value_type=str) of launch_ros.parameter_descriptions is a text"
+    """Return the YAML value of a text, if a parameter can have that value."""
+    hint = (
+        "for a text use ParameterValue(value, value_type=str) of launch_ros.parameter_descriptions"
+    )
     if not text:
         return ""
     try:
         value = loaded_yaml(text)
     except yaml.YAMLError as error:
-        raise TypeError(f"a parameter cannot be {text[:80]!r}, which is no YAML; {hint}") from error
+        raise TypeError(
+            f"a parameter cannot be {text[:80]!r}, which is not YAML; {hint}"
+        ) from error
     if isinstance(value, bool | int | float | str | bytes) or is_uniform(value):
         return value
     raise TypeError(f"a parameter cannot be {text[:80]!r}; {hint}")
@@ -127,7 +131,7 @@ def value_of_text(text: str) -> Any:
 def evaluate_values(
     context: LaunchContext, given: Mapping[Any, Any], prefix: str = ""
 ) -> dict[str, Any]:
-    """Return parameters by their full names; inner dictionaries have names with dots."""
+    """Return parameters by their full names; keys of nested dictionaries are joined by dots."""
     values: dict[str, Any] = {}
     for name, value in given.items():
         full = prefix + text_of(context, name)

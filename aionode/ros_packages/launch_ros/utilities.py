@@ -9,5 +9,5 @@ __all__ = ["is_namespace_absolute", "make_namespace_absolute", "prefix_namespace
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
-    """Return a namespace from the root on."""
+    """Return a namespace with a leading slash."""
     return ns if ns is None or ns.startswith("/") else f"/{ns}"

@@ -1,4 +1,4 @@
-"""The package that launch files import as `launch_xml`."""
+"""Launch files import this as `launch_xml`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The package that launch files import as `launch_yaml`."""
+"""Launch files import this as `launch_yaml`."""
 
 from __future__ import annotations
 

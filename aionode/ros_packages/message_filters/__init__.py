@@ -31,7 +31,7 @@ DEPTH = 10
 
 
 class Stamps(message_filters.Stamps):
-    """Finds the stamp of each message as time of rclpy."""
+    """Returns the stamp of each message as an rclpy time."""
 
     def _from_msg(self, stamp: Any) -> Any:
         return Time.from_msg(stamp)
@@ -86,7 +86,7 @@ class TimeSynchronizer(Synchronizer):
         queue_size: int,
         allow_headerless: bool = False,
     ) -> None:
-        self.lock = threading.RLock()  # a callback may give another message to its own input
+        self.lock = threading.RLock()  # a callback may pass another message to its own input
         self.queue_size = queue_size
         super().__init__(fs, matcher, Stamps(allow_headerless=allow_headerless))
 

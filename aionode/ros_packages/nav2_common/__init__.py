@@ -1,4 +1,4 @@
-"""The package that launch files import as `nav2_common`; the one of a workspace comes first."""
+"""Launch files import this as `nav2_common`; a workspace's own takes precedence."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """rclpy's API on aionode, for programs that run on rclpy today.
 
-Its modules and names are rclpy's. `init` starts a thread in which a context of aionode talks to
-others; executors are plain loops in the threads that spin, so callbacks run there and nowhere
-else, and nothing of asyncio is seen. `executors.py` calls every callback.
+Its modules and names are rclpy's. `init` starts a thread in which a context of aionode
+communicates; executors are plain loops in the threads that spin, so callbacks run only there, and
+asyncio stays out of sight. `executors.py` calls every callback.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context; everything else needs that.
+    """Initialise a context; everything else requires that.
 
     Args:
         args: The command line; `sys.argv` by default.
@@ -110,7 +110,7 @@ def init(
         A context manager that shuts it down.
 
     Raises:
-        RuntimeError: it is initialised already.
+        RuntimeError: it is already initialised.
     """
     return InitContextManager(args, context, domain_id, signal_handler_options)
 
@@ -141,11 +141,11 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
 
     Args:
         context: The context; the default one by default.
-        uninstall_handlers: Whether signals do again what they did before `init`; by default for
-            the default context.
+        uninstall_handlers: Whether to restore the signal handlers from before `init`; by default
+            for the default context.
 
     Raises:
-        RuntimeError: it is not initialised, or shut down already.
+        RuntimeError: it is not initialised, or already shut down.
     """
     is_default = context is None or context is get_default_context()
     utilities.shutdown(context=context)
@@ -154,7 +154,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut a context down, unless that has happened; see `shutdown`."""
+    """Shut a context down, unless it already is; see `shutdown`."""
     is_default = context is None or context is get_default_context()
     utilities.try_shutdown(context=context)
     if uninstall_handlers or (uninstall_handlers is None and is_default):

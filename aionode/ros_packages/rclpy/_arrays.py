@@ -13,13 +13,13 @@ __all__ = ["array_over"]
 def array_over(
     data: Any, shape: tuple[int, ...], dtype: np.dtype[Any], strides: tuple[int, ...]
 ) -> npt.NDArray[Any]:
-    """Return an array over the bytes of a message, which are not copied unless they are a list.
+    """Return an array over the bytes of a message, which are only copied if they are a list.
 
     Args:
         data: The field of the message.
         shape: Of the array.
         dtype: Of the array.
-        strides: The way from one element to the next in bytes, in each dimension; not negative.
+        strides: The distance between elements in bytes, in each dimension; not negative.
 
     Raises:
         TypeError: The message has less data than its size needs.
@@ -31,6 +31,6 @@ def array_over(
     if 0 not in shape:
         steps = ((count - 1) * stride for count, stride in zip(shape, strides, strict=True))
         needed = sum(steps) + dtype.itemsize
-    if given < needed:  # numpy does not look at the size of an empty buffer
+    if given < needed:  # numpy does not check the size of an empty buffer
         raise TypeError(f"the message has {given} bytes of data; its size needs {needed}")
     return np.ndarray(shape, dtype, buffer=data if given else None, strides=strides)

@@ -1,4 +1,4 @@
-"""The base of the entities of nodes: a handle, and its end."""
+"""The base classes of the entities of nodes: a handle, and how it is destroyed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "in_use", "in_use_by_node", "wait_until"]
 
 CHECK_S = 0.05
-"""Time between two looks of a wait for another process."""
+"""Time between two checks while waiting for another process."""
 
 steady_ns = MachineTime().steady_ns
 
@@ -33,7 +33,7 @@ ServiceHandleT = TypeVar("ServiceHandleT", bound="ClientHandle | ServiceHandle")
 
 
 def in_use(method: Callable[Concatenate[HandleT, P], T]) -> Callable[Concatenate[Any, P], T]:
-    """Return a method of owners of handles that calls `method` of their handle.
+    """Return a method for owners of handles that calls `method` of their handle.
 
     The handle is not destroyed during a call; once it is destroyed, calls raise InvalidHandle.
     """
@@ -49,7 +49,7 @@ def in_use(method: Callable[Concatenate[HandleT, P], T]) -> Callable[Concatenate
 def in_use_by_node(
     method: Callable[Concatenate[HandleT, P], T],
 ) -> Callable[Concatenate[Any, P], T]:
-    """Return the same for nodes, whose names with one underscore are their users'."""
+    """Return the same for nodes, whose names with one underscore belong to their users."""
 
     @wraps(method)
     def call(self: Any, /, *args: P.args, **kwargs: P.kwargs) -> T:
@@ -60,7 +60,7 @@ def in_use_by_node(
 
 
 class HandleOwner(Generic[HandleT]):
-    """An object with a handle, which is destroyed at the end of ``with``."""
+    """An object with a handle, destroyed at the end of ``with``."""
 
     _handle: HandleT
 
@@ -70,7 +70,7 @@ class HandleOwner(Generic[HandleT]):
         return self._handle
 
     def destroy(self) -> None:
-        """Destroy it. Use the method of the node for what a node has made."""
+        """Destroy it. For entities created by a node, use the node's method."""
         self._handle.destroy_when_not_in_use()
 
     def __enter__(self) -> Self:
@@ -109,7 +109,7 @@ class TopicEntity(EndpointEntity[TopicHandleT]):
 
 
 class ServiceEntity(EndpointEntity[ServiceHandleT]):
-    """A client or server."""
+    """A client or service server."""
 
     @property
     def service_name(self) -> str:
@@ -122,8 +122,8 @@ def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: floa
     """Block the thread until something is ready; nothing has to spin.
 
     Args:
-        is_ready: Whether it is.
-        context: Its shutdown ends the wait.
+        is_ready: Returns whether it is.
+        context: The context, whose shutdown ends the wait.
         timeout_sec: Maximum time to wait, in seconds; None for no limit.
 
     Returns:

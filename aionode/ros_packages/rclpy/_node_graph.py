@@ -1,4 +1,4 @@
-"""The graph as a node sees it. Nobody needs to spin for that."""
+"""The graph as seen by a node. Nobody needs to spin for these queries."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TYPES = {
 
 
 class NodeGraph(GraphQueries):
-    """The part of `Node` that has a name, and looks at others."""
+    """The part of `Node` with its name, and queries about other nodes."""
 
     _Node__handle: NodeHandle
     _context: Context
@@ -59,7 +59,7 @@ class NodeGraph(GraphQueries):
     # Nodes
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Block the thread until a node with this name exists; return whether it does in time.
+        """Block the thread until a node with this name exists; return whether it appeared in time.
 
         Args:
             fully_qualified_node_name: Namespace and name; the leading slash may be omitted.

@@ -1,6 +1,6 @@
-"""The parameters of a node: aionode's store, with the classes of rclpy.
+"""The parameters of a node: aionode's store, with rclpy's classes.
 
-All of a change happens in the calling thread, its callbacks and its event included.
+A change happens entirely in the calling thread, including its callbacks and its event.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Store(ParameterStore):
         return super()._own_descriptor(given, index)
 
     def _prepared(self, parameters: list[Any], descriptors: Mapping[str, Any]) -> list[Any]:
-        """Return parameters as they are given: rclpy sets each of the same name."""
+        """Return the given parameters: rclpy sets each of those with the same name."""
         return parameters
 
     def _checked_result(self, callback: Callable[..., Any], result: Any) -> Any:
-        """Return what an on-set callback has returned; anything unknown rejects the change."""
+        """Return the result of an on-set callback; anything unknown rejects the change."""
         if isinstance(result, msg.SetParametersResult):
             return result
         warnings.warn(
@@ -53,7 +53,7 @@ class Store(ParameterStore):
 
 
 class ParameterEvents:
-    """Publishes what has changed.
+    """Publishes changes of parameters.
 
     Args:
         publisher: Sends the events.
@@ -76,15 +76,15 @@ class ParameterEvents:
 
 
 class NodeParameters(ParameterMethods):
-    """The part of `Node` that has parameters."""
+    """The part of `Node` with parameters."""
 
     PARAM_REL_TOL = 1e-6
-    """How near to a limit or a step a float has to be, relative to it."""
+    """The relative tolerance for a float at a limit or a step."""
 
     def _Node__init_parameters(
         self, full_name: str, overrides: Iterable[Parameter[Any]], *, allow_undeclared: bool
     ) -> None:
-        """Begin without parameters; programs of rclpy look at the attributes besides the store."""
+        """Start without parameters; programs of rclpy read these attributes besides the store."""
         store = Store(full_name, overrides=overrides, allow_undeclared=allow_undeclared)
         ParameterMethods.__init__(self, store)
         self._Node__parameter_store = store

@@ -1,4 +1,4 @@
-"""The methods of executors and nodes that modules below them call."""
+"""The methods of executors and nodes called by modules on lower levels."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ __all__ = ["ExecutorLike", "NodeLike"]
 
 
 class ExecutorLike(Protocol):
-    """An executor, as tasks and nodes see it."""
+    """An executor, as seen by tasks and nodes."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         """Schedule a function or coroutine; return its future."""
 
     def wake(self) -> None:
-        """Wake it to look again at what is ready."""
+        """Wake it to check again what is ready."""
 
 
 class NodeLike(Protocol):
-    """A node, as executors and its own services see it."""
+    """A node, as seen by executors and its own services."""
 
     executor: Any
     _publishers: list[Any]

@@ -1,6 +1,6 @@
 """The names of rclpy's extension module that programs use.
 
-The handles do what those of the extension do; functions that only rclpy itself calls are left out.
+The handles work like those of the extension; functions that only rclpy itself calls are left out.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ rclpy_remove_ros_args = remove_ros_args
 
 
 def rclpy_get_rmw_implementation_identifier() -> str:
-    """Return the middleware whose format is used on the wire."""
+    """Return the middleware whose wire format is used."""
     return "rmw_zenoh_cpp"
 
 
@@ -90,5 +90,5 @@ def rclpy_serialize(message: Any, message_type: Any) -> bytes:
 
 
 def rclpy_deserialize(data: bytes, message_type: Any) -> Any:
-    """Return the message in bytes (CDR)."""
+    """Decode a message from bytes (CDR)."""
     return message_support(message_type).decode(data)

@@ -1,7 +1,7 @@
 """Finds the ready entities of an executor's nodes, takes their items and calls their callbacks.
 
-Each function takes, and returns what is to be called then, or None if there is nothing to do. The
-result of a call is awaited if it is a coroutine.
+Each function takes an item, and returns the function to call then, or None if there is nothing to
+do. The result of that call is awaited if it is a coroutine.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def find_ready(
     """Return what is ready now, in the order of a round."""
     ready: list[Ready] = []
     for node in nodes:
-        if node._Node__waitables:  # few have any
+        if node._Node__waitables:  # few nodes have any
             ready += [
                 (waitable, node, take_waitable)
                 for waitable in tuple(node._Node__waitables)
@@ -59,10 +59,10 @@ def find_ready(
 
 
 def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
-    """Return those that are ready; if none is, note in `arrivals` that all were looked at."""
+    """Return the ready entities; if there are none, note in `arrivals` that all were checked."""
     last = None if arrivals is None else arrivals.last
     ready = []
-    # A copy: another thread may destroy one meanwhile, and the one behind it would be left out.
+    # A copy: another thread may destroy one meanwhile, and the next one would be skipped.
     for entity in tuple(entities):
         if entity._handle.ready():
             ready.append(entity)  # noqa: PERF401  # a comprehension is one more call
@@ -80,7 +80,7 @@ def is_ready(waitable: Any, context: Any) -> bool:
 
 
 def wait_set_of(waitables: list[Any], context: Any) -> WaitSet:
-    """Return a wait set with the handles of waitables, without those that are being destroyed."""
+    """Return a wait set with the handles of waitables, except those being destroyed."""
     wait_set = WaitSet(0, 0, 0, 0, 0, 0, context)
     for waitable in waitables:
         try:
@@ -172,7 +172,7 @@ def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | No
         except BaseException:
             service.handle.give_up(header.request_id)
             raise
-        # A program may put a function of its own in this place, and answer later.
+        # A program may put its own function in this place, and answer later.
         service.send_response(response, header)
 
     return answer

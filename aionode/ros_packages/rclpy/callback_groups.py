@@ -1,4 +1,4 @@
-"""Callback groups decide which callbacks of a node may run at the same time."""
+"""Callback groups determine which callbacks of a node may run at the same time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ Entity = Any
 
 
 class CallbackGroup:
-    """Base of all groups. An executor asks `can_execute`, then calls the other two around a call.
+    """The base class of groups.
+
+    An executor asks `can_execute`, then calls the other two around a call.
 
     Attributes:
         entities: Weak references to its members.
@@ -29,7 +31,7 @@ class CallbackGroup:
         self.entities: set[weakref.ref[Any]] = set()
 
     def add_entity(self, entity: Entity) -> None:
-        """Add an entity, which is in no other group."""
+        """Add an entity that is in no other group."""
         self.entities.add(weakref.ref(entity))
 
     def has_entity(self, entity: Entity) -> bool:
@@ -50,7 +52,7 @@ class CallbackGroup:
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """Its callbacks may all run at the same time, each also beside itself."""
+    """All its callbacks may run at the same time, including several calls of the same one."""
 
     def can_execute(self, entity: Entity) -> bool:
         """Return True."""
@@ -70,16 +72,16 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active_entity: Entity | None = None
-        # Held while a call begins or ends, so that one thread begins. `can_execute` does without
-        # it, as executors ask `beginning_execution` before each call.
+        # Held while a call begins or ends, so that only one thread begins. `can_execute` does not
+        # need it, because executors ask `beginning_execution` before each call.
         self._lock = threading.RLock()
 
     def can_execute(self, entity: Entity) -> bool:
-        """Return whether none of its callbacks runs."""
+        """Return whether none of its callbacks is running."""
         return self._active_entity is None
 
     def beginning_execution(self, entity: Entity) -> bool:
-        """Begin a call, if none runs."""
+        """Begin a call, if none is running."""
         with self._lock:
             if self._active_entity is None:
                 self._active_entity = entity

@@ -35,7 +35,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
     Attributes:
         context: Its context.
         srv_type: The service class.
-        srv_name: The name it was made with.
+        srv_name: The name with which it was created.
         qos_profile: Its profile.
         callback_group: Its group.
     """
@@ -58,20 +58,20 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         self._sequences: dict[Future[ResponseT], int] = {}  # the same requests, by their futures
         self.callback_group = callback_group
         self._executor_event = False
-        # Held while numbers and futures of requests change: a response that comes at once waits
-        # until its future is here. A handler of a signal may call while this thread holds it.
+        # Held while numbers and futures of requests change: a response that arrives at once waits
+        # until its future is registered. A signal handler may call while this thread holds it.
         self._lock = threading.RLock()
 
     @property
     def __client(self) -> ClientHandle:
-        """The handle, by the name that programs know it by."""
+        """The handle, under the name that programs know."""
         return self._handle
 
     def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
-        """Send a request and block the thread until the response is here.
+        """Send a request, and block the thread until the response has arrived.
 
-        It may be called in a callback: nobody needs to spin the client's node. The server must be
-        able to answer meanwhile, so it must not be served by the same single-threaded executor.
+        It may be called in a callback: nobody needs to spin the client's node. But the server must
+        be able to answer meanwhile, so the same single-threaded executor must not serve it.
 
         Args:
             request: The request.
@@ -79,7 +79,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
 
         Raises:
             TypeError: `request` is of another class.
-            TimeoutError: no response came in time; a later one is dropped.
+            TimeoutError: no response arrived in time; a later one is dropped.
             RCLError: a finalizer calls this where it cannot wait.
         """
         if not isinstance(request, self.srv_type.Request):
@@ -103,7 +103,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         return response
 
     def call_async(self, request: RequestT) -> Future[ResponseT]:
-        """Send a request, and return a future of the response; an executor completes it.
+        """Send a request, and return a future for the response; an executor completes it.
 
         Raises:
             TypeError: `request` is of another class.
@@ -122,7 +122,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         """Return the future of a request.
 
         Raises:
-            KeyError: it is answered, or was given up.
+            KeyError: it was answered or given up.
         """
         with self._lock:
             return self._pending_requests[sequence_number]
@@ -134,7 +134,8 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
             if sequence is None:
                 return
             self._pending_requests.pop(sequence, None)
-            self._sequences.pop(future, None)  # last: an interrupted removal can be done again
+            # last, so that an interrupted removal can be repeated
+            self._sequences.pop(future, None)
             if not future.done():
                 self._handle.forget(sequence)
 
@@ -154,4 +155,4 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
 
 
 BaseClient = Client
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

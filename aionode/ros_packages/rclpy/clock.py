@@ -36,7 +36,7 @@ __all__ = [
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
 LONGEST_STEP_S = 1.0
-"""Time between two looks of a sleep on the system clock whether that clock was set."""
+"""Interval at which a sleep on the system clock checks whether that clock was set."""
 
 steady_ns = MachineTime().steady_ns
 
@@ -44,7 +44,7 @@ steady_ns = MachineTime().steady_ns
 class Clock(ClockHandle):
     """Shows the time. With ROS_TIME, a `ROSClock` is created.
 
-    Callbacks of jumps are called in the thread that sets the clock, which is the one that spins its
+    Jump callbacks are called in the thread that sets the clock, which is the one that spins its
     node.
 
     Raises:
@@ -72,7 +72,7 @@ class Clock(ClockHandle):
     def sleep_until(self, until: core.Time, context: Context | None = None) -> bool:  # type: ignore[override] # blocks
         """Block the thread until the clock shows `until`, or the context is shut down.
 
-        A clock of ROS time is set by a callback: another thread has to spin meanwhile.
+        A ROS time clock is set by a callback, so another thread has to spin meanwhile.
 
         Args:
             until: A time of this type of clock.
@@ -136,4 +136,4 @@ class ROSClock(Clock):
 
 
 BaseClock = Clock
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

@@ -20,7 +20,7 @@ __all__ = ["Context"]
 
 
 logging_lock = threading.RLock()
-"""Held while a context configures logging, unless another living one has configured it."""
+"""Held while a context configures logging, unless another living context has configured it."""
 
 
 def configure_logging(handle: ContextHandle) -> None:
@@ -41,12 +41,12 @@ def configure_logging(handle: ContextHandle) -> None:
 class Context:
     """The domain, arguments and end that the nodes of one participant share.
 
-    It is used once: `init`, then `shutdown` or `try_shutdown`. A thread of its own talks to other
-    processes from `init` on; callbacks run in the threads that spin.
+    It can be used once: `init`, then `shutdown` or `try_shutdown`. Its own thread communicates with
+    other processes from `init` on; callbacks run in the threads that spin.
     """
 
     def __init__(self) -> None:
-        # Guards the fields below; taken again by callbacks of the shutdown, and by nodes that end.
+        # Guards the fields below; acquired again by shutdown callbacks, and by nodes that end.
         self._lock = threading.RLock()
         self._callbacks: list[Callable[[], Any]] = []
         self._handle: ContextHandle | None = None
@@ -58,7 +58,7 @@ class Context:
         return self._handle
 
     def destroy(self) -> None:
-        """Destroy the handle, at the latest when it is no longer in use."""
+        """Destroy the handle as soon as it is no longer in use."""
         if self._handle is not None:
             self._handle.destroy_when_not_in_use()
 
@@ -77,9 +77,9 @@ class Context:
             domain_id: The domain; by default ``ROS_DOMAIN_ID``.
 
         Raises:
-            RuntimeError: it is initialised already, or the domain id is negative.
+            RuntimeError: it is already initialised, or the domain id is negative.
             UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
-            TransportError: there is no way to connect.
+            TransportError: no transport can connect.
         """
         with self._lock:
             if domain_id is not None and domain_id < 0:
@@ -121,10 +121,10 @@ class Context:
         handle.close()
 
     def shutdown(self) -> None:
-        """Destroy the nodes, send what they have published, and leave the graph.
+        """Destroy the nodes, send everything they have published, and leave the graph.
 
         Raises:
-            RuntimeError: it was not initialised, or is shut down already.
+            RuntimeError: it was not initialised, or is already shut down.
         """
         if self._handle is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
@@ -132,7 +132,7 @@ class Context:
             self._cleanup()
 
     def try_shutdown(self) -> None:
-        """Shut down, unless that has happened."""
+        """Shut down, unless it already is."""
         if self._handle is None:
             return
         with self._handle, self._lock:
@@ -140,7 +140,7 @@ class Context:
                 self._cleanup()
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Call `callback` at `shutdown`, or now if that has happened. Methods are held weakly.
+        """Call `callback` at `shutdown`, or now if it is shut down. Methods are held weakly.
 
         Raises:
             TypeError: it is not callable.
@@ -156,7 +156,7 @@ class Context:
                 self._callbacks.append(callback)
 
     def _forget(self, callback: Any) -> None:
-        # Called wherever the garbage collector is at work; the list may be gone meanwhile.
+        # Called wherever the garbage collector runs; the list may be gone by then.
         with suppress(ValueError):
             self._callbacks.remove(callback)
 

@@ -15,7 +15,7 @@ class Duration(core.Duration):
     """A duration in nanoseconds, which may be negative.
 
     Raises:
-        OverflowError: it does not fit 64 bits.
+        OverflowError: it does not fit into 64 bits.
     """
 
     __slots__ = ()
@@ -59,7 +59,7 @@ class Duration(core.Duration):
 
 
 def of_core(duration: Any) -> Any:
-    """Return aionode's duration as one of this module; other values as they are."""
+    """Return aionode's duration as one of this module; return other values unchanged."""
     if isinstance(duration, core.Duration):
         return Duration(nanoseconds=duration.nanoseconds)
     return duration

@@ -1,4 +1,4 @@
-"""Descriptions of endpoints of topics and services: of rclpy in ROS 2 Lyrical."""
+"""Descriptions of endpoints of topics and services, as in rclpy of ROS 2 Lyrical."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class ServiceEndpointInfo:
         service_type: The name of its type.
         service_type_hash: The hash of its type.
         qos_profiles: The profiles of its endpoints.
-        endpoint_gids: What identifies each of them, as numbers.
-        endpoint_type: What it is.
-        endpoint_count: How many endpoints it consists of.
+        endpoint_gids: The gid of each of them, as numbers.
+        endpoint_type: Client or server.
+        endpoint_count: The number of endpoints of which it consists.
     """
 
     __slots__ = (

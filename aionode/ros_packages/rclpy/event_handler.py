@@ -62,7 +62,7 @@ QoSSubscriptionEventType = SubscriptionEventType
 
 
 class EventHandler(Waitable[Any]):
-    """Has an executor call `callback` when something has happened.
+    """Makes an executor call `callback` when an event has happened.
 
     Attributes:
         event_type: What.
@@ -84,11 +84,11 @@ class EventHandler(Waitable[Any]):
             self._event = EventHandle(parent_impl, event_type)
 
     def is_ready(self, wait_set: WaitSet) -> bool:
-        """Return whether something has happened."""
+        """Return whether an event has happened."""
         return self._event.ready()
 
     def take_data(self) -> Any:
-        """Return the status, or None if nothing has happened."""
+        """Return the status, or None if no event has happened."""
         with self._event:
             return self._event.take_event() if self._event.ready() else None
 
@@ -100,7 +100,7 @@ class EventHandler(Waitable[Any]):
                 await result
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of handles it adds to a wait set: one."""
+        """Return the number of handles that it adds to a wait set: one."""
         return NumberOfEntities(num_events=1)
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:
@@ -115,7 +115,7 @@ class EventHandler(Waitable[Any]):
         self._event.__exit__(*exc)
 
     def destroy(self) -> None:
-        """Destroy it; its publisher or subscription does that."""
+        """Destroy it; called by its publisher or subscription."""
         self._event.destroy_when_not_in_use()
 
 
@@ -132,9 +132,9 @@ class QoSEventHandler(EventHandler):
 
 
 class DefaultHandler(EventHandler):
-    """Stands for a default callback, which logs that types or QoS do not fit.
+    """Stands for a default callback, which logs that types or QoS are incompatible.
 
-    The context itself reports that, once for each pair of endpoints, so no executor waits for it.
+    The context itself reports this, once for each pair of endpoints, so no executor waits for it.
     """
 
     def __init__(self, event_type: IntEnum) -> None:
@@ -151,7 +151,7 @@ def create_handlers(
     callbacks: Any,
     watches: dict[IntEnum, type[Watch]],
 ) -> list[EventHandler]:
-    """Return a handler for each callback that is given, or has a default.
+    """Return a handler for each callback that was given, or has a default.
 
     Args:
         group: The group of the callbacks.
@@ -177,7 +177,7 @@ def create_handlers(
 
 
 class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
-    """Callbacks for the events of a subscription; each gets a status."""
+    """Callbacks for the events of a subscription; each is called with a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
@@ -187,7 +187,7 @@ class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
 
 
 class PublisherEventCallbacks(events.PublisherEventCallbacks):
-    """Callbacks for the events of a publisher; each gets a status."""
+    """Callbacks for the events of a publisher; each is called with a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str

@@ -43,7 +43,7 @@ __all__ = [
 
 
 class NotInitializedException(Exception):  # noqa: N818  # rclpy's name
-    """The context is not initialised, or shut down."""
+    """The context is not initialised, or already shut down."""
 
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called."
@@ -58,7 +58,7 @@ class NoTypeSupportImportedException(Exception):  # noqa: N818  # rclpy's name
 
 
 class TimeSourceChangedError(Exception):
-    """The source of time changed during a sleep: of rclpy in Lyrical."""
+    """The source of time changed during a sleep, as in rclpy of Lyrical."""
 
 
 class ROSInterruptException(Exception):  # noqa: N818  # rclpy's name

@@ -1,7 +1,7 @@
-"""Executors: plain loops in the threads that spin, which call the callbacks of nodes.
+"""Executors: plain loops in the spinning threads, which call the callbacks of nodes.
 
-Input and output happen elsewhere, in the thread of the context; what arrives waits in the handles
-of the entities until an executor takes it.
+I/O happens elsewhere, in the thread of the context; arriving items wait in the handles of the
+entities until an executor takes them.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
 
 
 class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
-    """The future that was waited for is done."""
+    """The awaited future is done."""
 
 
 class TimeoutObject:
@@ -93,7 +93,7 @@ Work = tuple[Task[Any], "Entity | None", "NodeLike | None"]
 
 
 class Executor:
-    """Base of all executors. Subclasses define `spin_once`, with `wait_for_ready_callbacks`.
+    """The base class of executors. Subclasses define `spin_once`, using `wait_for_ready_callbacks`.
 
     Args:
         context: Its context; the default one by default.
@@ -102,18 +102,17 @@ class Executor:
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
         self._nodes: dict[NodeLike, None] = {}
-        # Held while a node is added or removed, so that its signal wakes this executor once. A
-        # thread can acquire this lock and the next one again: a handler of a signal, or a
+        # Held while a node is added or removed, so that its signal wakes this executor exactly
+        # once. A thread can acquire this lock and the next one recursively: a signal handler, or a
         # finalizer, may interrupt the thread that holds them.
         self._nodes_lock = threading.RLock()
         self._tasks: list[Work] = []
-        # Held while tasks are added, and while those that are done are left out, so that none is
-        # lost.
+        # Held while tasks are added, and while completed ones are removed, so that none is lost.
         self._tasks_lock = threading.RLock()
         self._Executor__wakeup = Wakeup()
         self._is_shutdown = False
         self._Executor__spins = 0
-        # Used by the thread that spins; only one thread may at a time.
+        # Used by the spinning thread; only one thread at a time may spin.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
         if self._context.handle is None:
@@ -146,7 +145,7 @@ class Executor:
     # Nodes
 
     def add_node(self, node: NodeLike) -> bool:
-        """Call the callbacks of `node` from now on; its former executor no longer does.
+        """Call the callbacks of `node` from now on; its former executor stops doing so.
 
         Returns:
             Whether it is new here.
@@ -165,7 +164,7 @@ class Executor:
         return True
 
     def remove_node(self, node: NodeLike) -> None:
-        """Call the callbacks of `node` no longer."""
+        """Stop calling the callbacks of `node`."""
         with self._nodes_lock:
             if node in self._nodes:
                 del self._nodes[node]
@@ -178,13 +177,13 @@ class Executor:
             return list(self._nodes)
 
     def wake(self) -> None:
-        """Wake the executor to look again at what is ready; any thread may call this."""
+        """Wake the executor to check again what is ready; any thread may call this."""
         self._Executor__wakeup.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Start no more callbacks, and release the nodes.
+        """Stop starting callbacks, and release the nodes.
 
-        As in rclpy, it does not wait for callbacks that run: it may be called in one.
+        As in rclpy, it does not wait for running callbacks: one of them may have called it.
 
         Args:
             timeout_sec: Ignored.
@@ -204,7 +203,7 @@ class Executor:
 
     @property
     def is_spinning(self) -> bool:
-        """Whether a thread is in one of the methods whose names begin with spin; of newer rclpy."""
+        """Whether a thread is in one of the spin methods; of newer rclpy."""
         return self._Executor__spins > 0
 
     @contextmanager
@@ -230,7 +229,8 @@ class Executor:
             future: The future.
             timeout_sec: Maximum time, in seconds; None or negative for no limit.
         """
-        # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
+        # A future created by this executor is one of its tasks, which costs `spin_once` one more
+        # call.
         future.add_done_callback(lambda _: self.wake())
         with self._Executor__spinning():
             self._Executor__spin_until(future, timeout_sec)
@@ -256,16 +256,19 @@ class Executor:
         return not (future.done() or future.cancelled() or self._is_shutdown)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and call it, or have a thread call it. One thread at a time may.
+        """Wait for one callback, and call it or have a thread call it.
+
+        Only one thread at a time may spin.
 
         Args:
             timeout_sec: Maximum time to wait, in seconds; None or negative for no limit.
 
         Raises:
-            NotImplementedError: it is an executor of one's own that does not define this.
-            Exception: what the callback raised, or an earlier one that a thread has called.
+            NotImplementedError: a custom executor does not define this method.
+            Exception: raised by the callback, or by an earlier one called in a thread.
         """
-        self._Executor__spins += 1  # not `__spinning()`, which would be a tenth of a callback
+        # not `__spinning()`, which would take a tenth of a callback's time
+        self._Executor__spins += 1
         try:
             self._spin_once_impl(timeout_sec)
         finally:
@@ -274,7 +277,7 @@ class Executor:
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        """As `spin_once`, but no longer than until `future` is done."""
+        """Like `spin_once`, but return as soon as `future` is done."""
         future.add_done_callback(lambda _: self.wake())
         with self._Executor__spinning():
             self._spin_once_impl(timeout_sec, future.done)
@@ -287,7 +290,7 @@ class Executor:
         raise NotImplementedError
 
     def can_execute(self, entity: Entity) -> bool:
-        """Return whether a callback of an entity may begin: none is about to, its group agrees."""
+        """Return whether an entity's callback may start: none is about to, and its group agrees."""
         return (
             not entity._executor_event
             and entity.callback_group is not None
@@ -302,12 +305,12 @@ class Executor:
     ) -> Work:
         """Wait for a callback that is ready, and return a task that calls it.
 
-        What is ready is collected in rounds: waitables, timers, subscriptions, guard conditions,
-        clients, services, of each at most one call.
+        Ready callbacks are collected in rounds: waitables, timers, subscriptions, guard conditions,
+        clients, services, with at most one call of each entity.
 
         Args:
             timeout_sec: Maximum time to wait, in seconds; None or negative for no limit.
-            nodes: The nodes to look at; by default those of this executor.
+            nodes: The nodes to check; by default those of this executor.
             condition: Ends the wait when it is true.
 
         Returns:
@@ -327,7 +330,7 @@ class Executor:
         nodes: list[NodeLike] | None,
         condition: Callable[[], bool],
     ) -> Ready | Work:
-        """Return the next of this round, or, after a wait, the first of another one."""
+        """Return the next of this round, or, after a wait, the first of the next round."""
         args = (timeout_sec, nodes, condition)
         while True:
             if self._cb_iter is None or self._last_args != args:
@@ -344,7 +347,7 @@ class Executor:
         nodes: list[NodeLike] | None = None,
         condition: Callable[[], bool] = never,
     ) -> Iterator[Work]:
-        """Return the callbacks of one round as tasks, after waiting until there is one."""
+        """Return the callbacks of one round as tasks, waiting until there is one."""
         return map(self._Executor__as_task, self._Executor__rounds(timeout_sec, nodes, condition))
 
     def _Executor__rounds(
@@ -353,7 +356,7 @@ class Executor:
         nodes: list[NodeLike] | None,
         condition: Callable[[], bool],
     ) -> Generator[Ready | Work, None, None]:
-        """Yield what is ready in one round, after waiting until something is."""
+        """Yield what is ready in one round, waiting until something is."""
         if isinstance(timeout_sec, TimeoutObject):
             timeout_sec = timeout_sec.timeout
         ends_ns = None
@@ -361,7 +364,7 @@ class Executor:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         yielded = False
         while not yielded:
-            self._Executor__wakeup.take(False)  # whatever it was for is looked at now
+            self._Executor__wakeup.take(False)  # whatever woke it is checked now
             self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
             if self._tasks:
@@ -375,7 +378,7 @@ class Executor:
             ready = self._Executor__in_turn(ready)
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for call in ready:
-                # A call of this round may have begun another one, of the same group.
+                # A call of this round may have started another one, of the same group.
                 if call is ready[0] or self.can_execute(call[0]):
                     yielded = True
                     yield call
@@ -383,12 +386,12 @@ class Executor:
                 raise TimeoutException
 
     def _Executor__in_turn(self, ready: list[Ready]) -> list[Ready]:
-        """Return what is ready in the order in which it is called."""
+        """Return the ready entities in the order in which they are called."""
         return ready
 
     def _Executor__raise_if_over(self, condition: Callable[[], bool] = never) -> None:
         if self._is_shutdown:
-            self.wake()  # another thread may wait, too
+            self.wake()  # another thread may be waiting, too
             raise ShutdownException
         if self._Executor__context_handle.is_shut_down:
             self._Executor__context_handle.note_told()
@@ -410,7 +413,7 @@ class Executor:
         return find_ready(nodes, self.can_execute, self._Executor__context_handle)
 
     def _Executor__unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
-        """Yield the tasks that can continue, and forget those that are done."""
+        """Yield the tasks that can continue, and remove those that are done."""
         with self._tasks_lock:
             self._tasks = [
                 work for work in self._tasks if not (work[0].done() or work[0].cancelled())
@@ -432,7 +435,7 @@ class Executor:
         waits = [] if left_ns is None else [left_ns]
         for node in nodes:
             for timer in tuple(node._timers):
-                # One whose group is busy is waited for by that group's end.
+                # If its group is busy, the end of that group's call wakes the executor.
                 if self.can_execute(timer):
                     due_ns = timer.handle.due_in_ns()
                     if due_ns is not None:
@@ -461,7 +464,7 @@ class Executor:
     # Calling callbacks
 
     def _Executor__as_task(self, ready: Ready | Work) -> Work:
-        """Return a task that takes what is ready and calls the entity's callback with it."""
+        """Return a task that takes the ready item and calls the entity's callback with it."""
         if isinstance(ready[0], Task):
             return ready  # type: ignore[return-value]  # as its first element says
         entity, node, take = cast("Ready", ready)
@@ -498,7 +501,7 @@ class Executor:
             self.wake()
 
     def _Executor__call(self, entity: Entity, node: Any, take: Take) -> Task[Any] | None:
-        """Take what is ready and call the entity's callback with it, in the only thread that does.
+        """Take the ready item and call the entity's callback with it, in the only spinning thread.
 
         Returns:
             A task if the callback is a coroutine, which has yet to begin.
@@ -556,7 +559,7 @@ class SingleThreadedExecutor(Executor):
 
 
 class MultiThreadedExecutor(Executor):
-    """Calls callbacks in a pool of threads.
+    """Calls callbacks in a thread pool.
 
     Args:
         num_threads: The most threads; by default one for each CPU of this process.
@@ -606,19 +609,19 @@ class MultiThreadedExecutor(Executor):
         for future in self._futures[:]:
             if future.done():
                 self._futures.remove(future)
-                future.result()  # raises what the callback raised
+                future.result()  # raises the callback's exception
 
     def _Executor__in_turn(self, ready: list[Ready]) -> list[Ready]:
-        """Return what is ready, first what has waited longest since its last call."""
+        """Return the ready entities, those first whose last call is longest ago."""
         return sorted(ready, key=lambda call: getattr(call[0], "_executor_turn", 0))
 
     def _Executor__wait_for_thread(
         self, timeout_sec: float | TimeoutObject | None, condition: Callable[[], bool]
     ) -> None:
-        """Wait until a thread is free, so that what is ready is taken when it can be called.
+        """Wait until a thread is free, so that items are taken only when they can be processed.
 
-        Else calls would queue up that nobody can stop: a timer that takes longer than its period
-        would keep services and Ctrl-C waiting for all that it has missed.
+        Otherwise calls would queue up that nobody can stop: a timer that takes longer than its
+        period would delay services and Ctrl-C by all its missed calls.
         """
         if isinstance(timeout_sec, TimeoutObject):
             timeout_sec = timeout_sec.timeout
@@ -626,14 +629,14 @@ class MultiThreadedExecutor(Executor):
         if timeout_sec is not None and timeout_sec >= 0:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         while sum(task._scheduled for task in self._futures) >= self._Executor__num_threads:
-            self._Executor__wakeup.take(False)  # whatever it was for is looked at now
+            self._Executor__wakeup.take(False)  # whatever woke it is checked now
             self._Executor__raise_if_over(condition)
             self._cb_iter = None  # more may be ready when a thread is free
             left_ns = None if ends_ns is None else ends_ns - steady_ns()
             if left_ns is not None and left_ns <= 0:
                 raise TimeoutException
             if sum(task._scheduled for task in self._futures) < self._Executor__num_threads:
-                return  # it was set free before the wake-up could be noted
+                return  # it became free before the wake-up could be recorded
             self._Executor__io.wait(
                 self._Executor__wakeup, None if left_ns is None else left_ns / 1e9
             )
@@ -646,7 +649,7 @@ class MultiThreadedExecutor(Executor):
             self.wake()
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
-        """Begin no more callbacks, wait for those that run, and end the threads."""
+        """Stop starting callbacks, wait for running ones, and end the threads."""
         success = super().shutdown(timeout_sec)
         self._executor.shutdown(wait=wait_for_threads)
         return success

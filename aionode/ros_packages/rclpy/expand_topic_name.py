@@ -8,7 +8,7 @@ __all__ = ["expand_topic_name"]
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Return the full name of a topic that a node would use; it is not remapped.
+    """Return the full name of a topic that a node would use, without remapping.
 
     Raises:
         InvalidTopicNameException, InvalidNodeNameException, InvalidNamespaceException: a name is

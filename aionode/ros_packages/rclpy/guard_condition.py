@@ -1,4 +1,4 @@
-"""Guard conditions, which any thread triggers."""
+"""Guard conditions, which any thread may trigger."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ __all__ = ["GuardCondition"]
 
 
 class GuardCondition(HandleOwner[GuardConditionHandle]):
-    """Has an executor call `callback` after `trigger`. Made by `Node.create_guard_condition`.
+    """Makes an executor call `callback` after `trigger`. Created by `Node.create_guard_condition`.
 
     Attributes:
-        callback: What is called; None to wake the executor only.
+        callback: The function to call; None to only wake the executor.
         callback_group: Its group.
     """
 
@@ -37,6 +37,6 @@ class GuardCondition(HandleOwner[GuardConditionHandle]):
         self._handle = GuardConditionHandle(self._context.handle)
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False  # whether an executor has a task for it that has not begun
+        self._executor_event = False  # whether an executor has a task for it that has not started
 
     trigger = in_use(GuardConditionHandle.trigger_guard_condition)

@@ -28,4 +28,4 @@ __all__ = [
     "shutdown",
 ]
 
-_root_logger = RcutilsLogger()  # rclpy's; tests of users reach for it
+_root_logger = RcutilsLogger()  # rclpy's name; tests of users use it

@@ -1,4 +1,4 @@
-"""The services through which other nodes read and set log levels of this process."""
+"""The services by which other nodes read and set log levels of this process."""
 
 from __future__ import annotations
 

@@ -151,21 +151,22 @@ HIDDEN_NODE_PREFIX = "_"
 class Node(NodeParameters, NodeGraph):
     """A node: a name in the graph, and publishers, subscriptions, services, clients and timers.
 
-    Callbacks run in the threads that spin an executor with this node. Everything else works
-    without that, and in any thread.
+    Callbacks run in the threads that spin an executor with this node. Everything else works without
+    spinning, and in any thread.
 
     Args:
         node_name: Its name.
         context: Its context; the default one by default.
         cli_args: Arguments for this node alone, as on a command line.
         namespace: Its namespace; the root by default.
-        use_global_arguments: Whether those of the context count as well.
+        use_global_arguments: Whether the context's arguments apply as well.
         enable_rosout: Whether its log is published on ``/rosout``.
-        rosout_qos_profile: QoS of that.
+        rosout_qos_profile: The QoS of that topic.
         start_parameter_services: Whether other nodes can read and set its parameters.
-        parameter_overrides: Values that go before those of `declare_parameter`.
+        parameter_overrides: Values that take precedence over those of `declare_parameter`.
         allow_undeclared_parameters: Whether parameters can be set without being declared.
-        automatically_declare_parameters_from_overrides: Whether to declare one for each override.
+        automatically_declare_parameters_from_overrides: Whether to declare a parameter for each
+            override.
         enable_logger_service: Whether other nodes can read and set its log levels.
 
     Raises:
@@ -173,7 +174,7 @@ class Node(NodeParameters, NodeGraph):
         InvalidNodeNameException, InvalidNamespaceException: a name is invalid (ValueErrors).
     """
 
-    ParameterInput = Any  # what declare_parameters takes, for type checkers
+    ParameterInput = Any  # accepted by declare_parameters, for type checkers
 
     def __init__(
         self,
@@ -290,7 +291,10 @@ class Node(NodeParameters, NodeGraph):
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that calls its callbacks, or None. Setting it takes it from the former."""
+        """The executor that calls its callbacks, or None.
+
+        Setting it removes the node from the former one.
+        """
         return None if self._Node__executor_weakref is None else self._Node__executor_weakref()
 
     @executor.setter
@@ -312,7 +316,7 @@ class Node(NodeParameters, NodeGraph):
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of entities that are created without one; one callback of it runs at a time."""
+        """The group of entities created without one; only one callback of it runs at a time."""
         return self._default_callback_group
 
     def get_clock(self) -> Clock:
@@ -340,12 +344,12 @@ class Node(NodeParameters, NodeGraph):
 
         Args:
             msg_type: The class of its messages.
-            topic: Its topic; relative names are below the node's namespace.
+            topic: Its topic; relative names are in the node's namespace.
             qos_profile: Its profile, or a depth.
             callback_group: The group of its event callbacks.
-            event_callbacks: What is called when something happens to it.
+            event_callbacks: Callbacks for its events.
             qos_overriding_options: Which policies parameters may override.
-            publisher_class: The class to make one of.
+            publisher_class: The class of the publisher.
 
         Raises:
             InvalidTopicNameException: the topic is invalid (a ValueError).
@@ -393,17 +397,17 @@ class Node(NodeParameters, NodeGraph):
 
         Args:
             msg_type: The class of its messages.
-            topic: Its topic; relative names are below the node's namespace.
+            topic: Its topic; relative names are in the node's namespace.
             callback: Called with each message, or with it and a `MessageInfo`.
             qos_profile: Its profile, or a depth: how many messages wait for the callback.
             callback_group: The group of its callbacks.
-            event_callbacks: What is called when something happens to it.
+            event_callbacks: Callbacks for its events.
             qos_overriding_options: Which policies parameters may override.
             raw: Whether the callback gets bytes.
-            content_filter_options: Which messages it takes.
-            acceptable_buffer_backends: Where large arrays may lie, of rclpy in Lyrical: messages
-                come in the memory of the processor, which every publisher offers, whatever is
-                acceptable besides.
+            content_filter_options: Selects the messages that it receives.
+            acceptable_buffer_backends: Where large arrays may be stored, as in rclpy of Lyrical:
+                messages always arrive in main memory, which every publisher offers, whatever else
+                is acceptable.
 
         Raises:
             InvalidTopicNameException: the topic is invalid (a ValueError).
@@ -498,10 +502,11 @@ class Node(NodeParameters, NodeGraph):
 
         Args:
             timer_period_sec: The period in seconds.
-            callback: Called without arguments, or with a `TimerInfo` for a parameter annotated so.
+            callback: Called without arguments, or with a `TimerInfo` if it has a parameter
+                annotated as one.
             callback_group: Its group.
             clock: The clock that it follows; the node's by default.
-            autostart: Whether it begins now, or with `reset`.
+            autostart: Whether it starts now, rather than with `reset`.
         """
         period_ns = int(float(timer_period_sec) * S_TO_NS)
         group = callback_group or self.default_callback_group
@@ -521,7 +526,7 @@ class Node(NodeParameters, NodeGraph):
     def create_guard_condition(
         self, callback: Callable[[], object], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """Return a guard condition that has an executor call `callback`."""
+        """Return a guard condition that makes an executor call `callback`."""
         group = callback_group or self.default_callback_group
         with self.handle:
             guard = GuardCondition(callback, group, context=self.context)
@@ -547,7 +552,7 @@ class Node(NodeParameters, NodeGraph):
     def _Node__add(
         self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None
     ) -> None:
-        """Own an entity, and have the executor look at it.
+        """Register an entity, and wake the executor.
 
         Args:
             entity: The entity.
@@ -575,33 +580,33 @@ class Node(NodeParameters, NodeGraph):
     # End
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Destroy a publisher; return whether it was one of this node."""
+        """Destroy a publisher; return whether it belonged to this node."""
         self._Node__remove_event_handlers(publisher, self._publishers)
         return self._Node__destroy(publisher, self._publishers)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Destroy a subscription; return whether it was one of this node."""
+        """Destroy a subscription; return whether it belonged to this node."""
         self._Node__remove_event_handlers(subscription, self._subscriptions)
         return self._Node__destroy(subscription, self._subscriptions)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
-        """Destroy a client; return whether it was one of this node."""
+        """Destroy a client; return whether it belonged to this node."""
         return self._Node__destroy(client, self._clients)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
-        """Destroy a service; return whether it was one of this node."""
+        """Destroy a service; return whether it belonged to this node."""
         return self._Node__destroy(service, self._services)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Destroy a timer; return whether it was one of this node."""
+        """Destroy a timer; return whether it belonged to this node."""
         return self._Node__destroy(timer, self._timers)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Destroy a guard condition; return whether it was one of this node."""
+        """Destroy a guard condition; return whether it belonged to this node."""
         return self._Node__destroy(guard, self._guards)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """Destroy a rate, and wake what sleeps; return whether it was one of this node."""
+        """Destroy a rate, and wake sleeping threads; return whether it belonged to this node."""
         success = self.destroy_timer(rate._timer)
         rate.destroy()
         return success
@@ -656,7 +661,7 @@ class Node(NodeParameters, NodeGraph):
 
 
 def as_profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
-    """Return a profile, also for a depth.
+    """Return a profile, given as such or as a depth.
 
     Raises:
         ValueError: the depth is negative.
@@ -672,4 +677,4 @@ def as_profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
 
 
 BaseNode = Node
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

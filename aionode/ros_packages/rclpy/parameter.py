@@ -51,7 +51,7 @@ class Type(IntEnum):
         """Return the type of a value. An empty list counts as BYTE_ARRAY.
 
         Raises:
-            TypeError: no type fits it.
+            TypeError: no type matches it.
         """
         if parameter_value is None:
             return cls.NOT_SET
@@ -85,7 +85,7 @@ class Type(IntEnum):
         )
 
 
-# bool before int, as True is an int to Python
+# bool before int, because True is an int in Python
 SINGLE: tuple[tuple[type, Type], ...] = (
     (bool, Type.BOOL),
     (int, Type.INTEGER),
@@ -102,7 +102,7 @@ ELEMENTS: tuple[tuple[type, Type], ...] = (
 
 
 def field_of(type_: IntEnum) -> str:
-    """Return the field of a ParameterValue that has the value of a type."""
+    """Return the field of a ParameterValue for values of a type."""
     return f"{type_.name.lower()}_value"
 
 
@@ -115,7 +115,7 @@ class Parameter(core.Parameter, Generic[AllowableParameterValueT]):
         value: The value.
 
     Raises:
-        TypeError: no type fits the value.
+        TypeError: no type matches the value.
         ValueError: the value is not of the given type.
     """
 
@@ -150,7 +150,7 @@ class Parameter(core.Parameter, Generic[AllowableParameterValueT]):
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Return the value in a text, in the syntax of YAML, as a message; other texts are strings."""
+    """Parse a value in YAML syntax into a message; other texts are strings."""
     return from_aionode(core.get_parameter_value(string_value))
 
 
@@ -164,12 +164,12 @@ def parameter_dict_from_yaml_file(
 
     Args:
         parameter_file: Path of the file.
-        use_wildcard: Whether those of ``/**`` count.
-        target_nodes: The nodes whose parameters count; all by default.
+        use_wildcard: Whether to include those of ``/**``.
+        target_nodes: The nodes whose parameters to return; all by default.
         namespace: Prefix of the names.
 
     Raises:
-        RuntimeError: the file has another form, or no parameters of these nodes.
+        RuntimeError: the file is malformed, or has no parameters of these nodes.
     """
     content = loaded_yaml(read_file(parameter_file))
     keys = []
@@ -191,7 +191,7 @@ def parameter_dict_from_yaml_file(
 
 
 def key_of(node_name: str, content: dict[str, Any]) -> str | None:
-    """Return the key of a node in a parameter file, with or without its slash."""
+    """Return the key of a node in a parameter file, with or without leading slash."""
     absolute = f"/{node_name.removeprefix('/')}"
     for key in (absolute, absolute.removeprefix("/")):
         if key in content:

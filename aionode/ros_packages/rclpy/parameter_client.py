@@ -34,17 +34,17 @@ SERVICES: dict[str, Any] = {
     "describe_parameters": msg.DescribeParameters,
     "set_parameters_atomically": msg.SetParametersAtomically,
 }
-"""The services of a node's parameters, by their names below that of the node."""
+"""The services of a node's parameters, by their names below the node's name."""
 
 
 class AsyncParameterClient:
-    """Reads and sets the parameters of another node; each call returns a future of the response.
+    """Reads and sets the parameters of another node; each call returns a future for the response.
 
-    An executor with `node` has to spin meanwhile. A `callback` is called with the future when that
-    is done.
+    An executor with `node` has to spin meanwhile. A `callback` is called with the future when it is
+    done.
 
     Args:
-        node: The node that asks.
+        node: The node that sends the requests.
         remote_node_name: The other node.
         qos_profile: QoS of the services.
         callback_group: The group of their clients.
@@ -70,11 +70,11 @@ class AsyncParameterClient:
         }
 
     def services_are_ready(self) -> bool:
-        """Return whether all services are there."""
+        """Return whether all services are available."""
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Block the thread until all services are there; return whether they are in time."""
+        """Block the thread until all services are available; return whether they were in time."""
         return wait_until(self.services_are_ready, self.node.context, timeout_sec)
 
     def list_parameters(
@@ -83,13 +83,13 @@ class AsyncParameterClient:
         depth: int | None = None,
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
-        """Ask for names."""
+        """Request names."""
         return self._ask("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
-        """Ask for values."""
+        """Request values."""
         return self._ask("get_parameters", callback, names=names)
 
     def set_parameters(
@@ -103,13 +103,13 @@ class AsyncParameterClient:
     def describe_parameters(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
-        """Ask for descriptors."""
+        """Request descriptors."""
         return self._ask("describe_parameters", callback, names=names)
 
     def get_parameter_types(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
-        """Ask for types."""
+        """Request types."""
         return self._ask("get_parameter_types", callback, names=names)
 
     def set_parameters_atomically(
@@ -133,7 +133,7 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
-        """Set the parameters that a file has for the other node, one by one."""
+        """Set the parameters in a file for the other node, one by one."""
         return self.set_parameters(self._in_file(parameter_file, use_wildcard), callback)
 
     def load_parameter_file_atomically(
@@ -142,13 +142,13 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
-        """Set the parameters that a file has for the other node, all or none."""
+        """Set the parameters in a file for the other node, all or none."""
         return self.set_parameters_atomically(self._in_file(parameter_file, use_wildcard), callback)
 
     def _ask(
         self, service: str, callback: Callable[[Future[Any]], None] | None, **fields: Any
     ) -> Future[Any]:
-        """Send a request, and have `callback` called with its future."""
+        """Send a request, and call `callback` with its future."""
         future = self._clients[service].call_async(SERVICES[service].Request(**fields))
         if callback is not None:
             future.add_done_callback(callback)

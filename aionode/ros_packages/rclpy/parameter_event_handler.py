@@ -46,11 +46,11 @@ class ParameterEventHandler:
 
     Args:
         node: The node that subscribes to the events; names are relative to it.
-        qos_profile: QoS of that.
+        qos_profile: QoS of the subscription.
         callback_group: The group of its callback.
         event_callbacks: Callbacks for events of the subscription itself.
         qos_overriding_options: Which policies parameters may override.
-        raw: Whether events come as bytes, which only event callbacks can take.
+        raw: Whether events are delivered as bytes, which only event callbacks accept.
     """
 
     class Callbacks:
@@ -64,7 +64,7 @@ class ParameterEventHandler:
             self.mutex = RLock()
 
         def event_callback(self, event: Any) -> None:
-            """Call those that an event concerns."""
+            """Call the callbacks that an event concerns."""
             with self.mutex:
                 for (name, node_name), handles in self.parameter_callbacks.items():
                     parameter = ParameterEventHandler.get_parameter_from_event(
@@ -88,7 +88,7 @@ class ParameterEventHandler:
             return handle
 
         def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-            """Remove a callback; a RuntimeError if it was not added."""
+            """Remove a callback; raise RuntimeError if it was not added."""
             key = (handle.parameter_name, handle.node_name)
             with self.mutex:
                 if handle not in self.parameter_callbacks.get(key, ()):
@@ -107,7 +107,7 @@ class ParameterEventHandler:
             return handle
 
         def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-            """Remove a callback; a RuntimeError if it was not added."""
+            """Remove a callback; raise RuntimeError if it was not added."""
             with self.mutex:
                 if handle not in self.event_callbacks:
                     raise RuntimeError(GONE)
@@ -137,7 +137,7 @@ class ParameterEventHandler:
         )
 
     def destroy(self) -> None:
-        """Call no more."""
+        """Stop calling callbacks."""
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     @staticmethod
@@ -162,7 +162,7 @@ class ParameterEventHandler:
 
         Args:
             parameter_name: The parameter.
-            node_name: Its node; an empty name is the own node, a relative one in its namespace.
+            node_name: Its node; an empty name means this node, a relative one is in its namespace.
             callback: Called with the message.
         """
         return self._callbacks.add_parameter_callback(
@@ -170,7 +170,7 @@ class ParameterEventHandler:
         )
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback; a RuntimeError if it was not added."""
+        """Remove a callback; raise RuntimeError if it was not added."""
         self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(
@@ -180,17 +180,17 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback; a RuntimeError if it was not added."""
+        """Remove a callback; raise RuntimeError if it was not added."""
         self._callbacks.remove_parameter_event_callback(handle)
 
     def configure_nodes_filter(self, node_names: Sequence[str] | None = None) -> bool:
-        """Take the events of some nodes alone, and of all without names; of rclpy in Lyrical.
+        """Receive only events of some nodes, or of all without names; as in rclpy of Lyrical.
 
         Args:
             node_names: Their full names, with namespace.
 
         Returns:
-            Whether the filter is set, or taken away.
+            Whether the filter was set or removed.
         """
         names = list(node_names or ())
         expression = " OR ".join(f"node = %{at}" for at in range(len(names)))

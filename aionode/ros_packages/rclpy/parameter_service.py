@@ -1,4 +1,4 @@
-"""The services through which other nodes read and set the parameters of a node."""
+"""The services by which other nodes read and set the parameters of a node."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["ParameterService"]
 
 
 class ParameterService:
-    """The six services of one node, which it does not keep alive."""
+    """The six services of one node, without keeping the node alive."""
 
     def __init__(self, node: NodeLike) -> None:
         name = node.get_name()
@@ -44,12 +44,12 @@ class ParameterService:
 def unless_refused(
     callback: Callable[[Any, Any], Any], logger: Any, service_name: str
 ) -> Callable[[Any, Any], Any]:
-    """Return `callback`; a request that it refuses is logged, and gets an empty answer."""
+    """Return `callback`, with refused requests logged and answered by an empty response."""
 
     def answer(request: Any, response: Any) -> Any:
         try:
             return callback(request, response)
-        except RequestRefusedError as error:  # it would come out of the program's spin()
+        except RequestRefusedError as error:  # otherwise the program's spin() would raise it
             logger.warning(f"{service_name}: {error}")
             return response
 

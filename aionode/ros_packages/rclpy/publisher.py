@@ -22,11 +22,11 @@ FOREVER = Duration(seconds=-1)
 
 
 class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
-    """Sends messages to a topic. Made by `Node.create_publisher`.
+    """Sends messages to a topic. Created by `Node.create_publisher`.
 
     Attributes:
         msg_type: The class of its messages.
-        topic: The name it was made with.
+        topic: The name with which it was created.
         qos_profile: Its profile.
         event_handlers: Its event handlers.
     """
@@ -50,11 +50,11 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
 
     @property
     def __publisher(self) -> PublisherHandle:
-        """The handle, by the name that programs know it by."""
+        """The handle, under the name that programs know."""
         return self._handle
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send a message, or one that is encoded already. Nobody needs to spin for that.
+        """Send a message, or one that is already encoded. Nobody needs to spin.
 
         Raises:
             TypeError: it is of another class, or a value does not fit its field.
@@ -72,10 +72,10 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
     assert_liveliness = in_use(PublisherHandle.assert_liveliness)
 
     def wait_for_all_acked(self, timeout: Duration = FOREVER) -> bool:
-        """Wait until what was published is handed on; return whether that is so in time."""
+        """Wait until everything published is passed on; return whether it was in time."""
         with self.handle:
             return self._handle.wait_for_all_acked(timeout)
 
 
 BasePublisher = Publisher
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

@@ -59,7 +59,7 @@ __all__ = [
 
 
 class QoSProfile(core.QoSProfile):
-    """The policies of one endpoint; a history or a depth has to be given.
+    """The policies of one endpoint; a history or a depth is required.
 
     Raises:
         InvalidQoSProfileException: neither is given, or KEEP_LAST without a depth.
@@ -82,7 +82,7 @@ def policies(profile: core.QoSProfile) -> dict[str, Any]:
 
 
 def as_own(profile: core.QoSProfile) -> QoSProfile:
-    """Return a profile as one of this module."""
+    """Return a profile as one of this module's class."""
     return profile if isinstance(profile, QoSProfile) else QoSProfile(**policies(profile))
 
 
@@ -91,7 +91,7 @@ def qos_check_compatible(
 ) -> tuple[QoSCompatibility, str]:
     """Report any two profiles as compatible, as rmw_zenoh does.
 
-    Over Zenoh everything is delivered. Within one context the rules of DDS hold; ask
+    Over Zenoh everything is delivered. Within one context the rules of DDS apply; use
     `aionode.qos.qos_check_compatible` for those.
     """
     del publisher_qos, subscription_qos
@@ -131,7 +131,7 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """Return the profile of a name.
+        """Return the profile with a name.
 
         Raises:
             KeyError: there is none.
@@ -148,7 +148,7 @@ QoSPolicyEnum = HistoryPolicy.__base__
 
 
 class DeprecatedMember:
-    """A former name of a member of a policy, which warns when it is used."""
+    """A former name of a policy member, which warns when it is used."""
 
     def __init__(self, former: str, name: str) -> None:
         self.former = former
@@ -169,7 +169,7 @@ FORMER_NAMES: dict[type[Enum], str] = {
     DurabilityPolicy: "SYSTEM_DEFAULT TRANSIENT_LOCAL VOLATILE UNKNOWN",
     LivelinessPolicy: "SYSTEM_DEFAULT AUTOMATIC MANUAL_BY_TOPIC UNKNOWN",
 }
-"""The members that have a former name, as `RMW_QOS_POLICY_HISTORY_KEEP_LAST`."""
+"""The members with a former name, such as `RMW_QOS_POLICY_HISTORY_KEEP_LAST`."""
 
 for _policy, _names in FORMER_NAMES.items():
     for _name in _names.split():

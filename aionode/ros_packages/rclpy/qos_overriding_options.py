@@ -28,10 +28,10 @@ def _declare_qos_parameters(
     qos: QoSProfile,
     options: QoSOverridingOptions | None,
 ) -> QoSProfile:
-    """Declare the parameters of an endpoint, and return the profile that they result in.
+    """Declare the parameters of an endpoint, and return the resulting profile.
 
     Raises:
-        TypeError: the endpoint is neither publisher nor subscription.
+        TypeError: the endpoint is neither a publisher nor a subscription.
         InvalidQosOverridesError: a value is invalid, or the callback rejects the profile.
     """
     if not issubclass(entity_type, Publisher | Subscription):
@@ -44,7 +44,7 @@ def _declare_qos_parameters(
 
 
 def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
-    """Return a policy as the value of its parameter: a word, a number, or nanoseconds."""
+    """Return a policy as a parameter value: a word, a number, or nanoseconds."""
     value = getattr(qos, policy.name.lower())
     if isinstance(value, Duration):
         return value.nanoseconds

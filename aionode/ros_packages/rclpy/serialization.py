@@ -14,7 +14,7 @@ def serialize_message(message: Any) -> bytes:
     """Return a message as bytes.
 
     Raises:
-        AttributeError: it is no message.
+        AttributeError: it is not a message.
     """
     message_type: Any = type(message)
     check_for_type_support(message_type)
@@ -22,11 +22,11 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
-    """Return the message of a class in bytes.
+    """Decode a message of a class from bytes.
 
     Raises:
-        AttributeError: `message_type` is no message class.
-        DecodeError: the bytes hold no such message (a ValueError).
+        AttributeError: `message_type` is not a message class.
+        DecodeError: the bytes are not such a message (a ValueError).
     """
     check_for_type_support(message_type)
     return message_support(message_type).decode(serialized_message)

@@ -27,11 +27,11 @@ ResponseT = TypeVar("ResponseT")
 
 
 class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
-    """Answers requests. Made by `Node.create_service`.
+    """Answers requests. Created by `Node.create_service`.
 
     Attributes:
         srv_type: The service class.
-        srv_name: The name it was made with.
+        srv_name: The name with which it was created.
         callback: Called with request and response; returns the response.
         callback_group: Its group.
         qos_profile: Its profile.
@@ -56,7 +56,7 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
 
     @property
     def __service(self) -> ServiceHandle:
-        """The handle, by the name that programs know it by."""
+        """The handle, under the name that programs know."""
         return self._handle
 
     configure_introspection = in_use(ServiceHandle.configure_introspection)
@@ -67,7 +67,7 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
         """Answer the request with this header.
 
         Raises:
-            TypeError: `response` is of another class, or `header` is no header.
+            TypeError: `response` is of another class, or `header` is not a header.
             InvalidHandle: the service is destroyed.
         """
         if not isinstance(response, self.srv_type.Response):
@@ -81,4 +81,4 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
 
 
 BaseService = Service
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM and SIGHUP: they shut contexts down, and then do what they did before."""
+"""SIGINT, SIGTERM and SIGHUP: they shut contexts down, and then call the former handlers."""
 
 from __future__ import annotations
 
@@ -44,12 +44,14 @@ SIGNALS = {
 }
 
 HANGUP = getattr(signal, "SIGHUP", None)
-"""The terminal, or the session of ssh, is lost. rclpy's programs end by it without cleanup; here it
-is a second SIGTERM, unless the program or ``nohup`` has made something else of it.
-"""
+"""The terminal, or the ssh session, is lost. It ends rclpy's programs without cleanup; here it acts
+like SIGTERM, unless the program or ``nohup`` has installed something else."""
 
 AGAIN_S = 1.0
-"""For how long after a signal a SIGINT belongs to it, and becomes no KeyboardInterrupt.
+"""How long after a signal a SIGINT counts as part of it, and does not become a KeyboardInterrupt.
+
+A terminal sends its signals to all processes of a group, and processes that have started others
+forward them. A KeyboardInterrupt would end the cleanup that the first signal began.
 
 A terminal sends its signals to all processes of a group, and those that have started others forward
 them. A KeyboardInterrupt would end the cleanup that the first signal began.
@@ -58,15 +60,15 @@ them. A KeyboardInterrupt would end the cleanup that the first signal began.
 steady_ns = MachineTime().steady_ns
 
 replaced: dict[int, Any] = {}
-"""By signal: the handler that was there before."""
+"""By signal: the handler installed before."""
 
 
 guards: weakref.WeakValueDictionary[int, GuardConditionHandle] = weakref.WeakValueDictionary()
-"""The guard conditions that each of the signals triggers, by their `id`."""
+"""The guard conditions triggered by the signals, by their `id`."""
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Return which signals shut contexts down."""
+    """Return the signals that shut contexts down."""
     options = SignalHandlerOptions.NO
     for option, number in SIGNALS.items():
         if number in replaced:
@@ -77,8 +79,8 @@ def get_current_signal_handlers_options() -> SignalHandlerOptions:
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
     """Install handlers by which these signals shut contexts down.
 
-    SIGINT goes on as KeyboardInterrupt in the main thread; SIGTERM lets `spin` end. Only the main
-    thread can do that; in others nothing happens.
+    SIGINT continues as KeyboardInterrupt in the main thread; SIGTERM makes `spin` return. Only the
+    main thread can install handlers; in others nothing happens.
     """
     numbers = [number for option, number in SIGNALS.items() if option in options]
     if (
@@ -96,7 +98,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Restore what the signals did before."""
+    """Restore the former signal handlers."""
     for number, before in list(replaced.items()):
         try:
             if signal.getsignal(number) is handle:
@@ -107,10 +109,10 @@ def uninstall_signal_handlers() -> None:
 
 
 def handle(number: int, frame: FrameType | None) -> None:
-    """Shut all contexts down, and call the handler that was there before.
+    """Shut all contexts down, and call the former handler.
 
-    The default of SIGTERM and SIGHUP, which ends the process, is left out: the executors end, and
-    with them the program.
+    The default action of SIGTERM and SIGHUP, which ends the process, is omitted: the executors end,
+    and with them the program.
     """
     if postpone(partial(handle, number, None)):
         return
@@ -118,7 +120,7 @@ def handle(number: int, frame: FrameType | None) -> None:
     contexts = living_contexts()
     for context in contexts:
         context.interrupt()
-    for reference in guards.valuerefs():  # not iterated over: other threads add some meanwhile
+    for reference in guards.valuerefs():  # not iterated over: other threads may add some meanwhile
         guard = reference()
         if guard is not None:
             guard.trigger_guard_condition()
@@ -134,13 +136,13 @@ def handle(number: int, frame: FrameType | None) -> None:
 
 
 class First:
-    """The last signal that did not belong to one before."""
+    """The last signal that did not belong to an earlier one."""
 
     at_ns: float = float("-inf")
 
 
 def is_again() -> bool:
-    """Return whether a signal belongs to one before; if not, others belong to it from now on."""
+    """Return whether a signal belongs to an earlier one; if not, later ones may belong to it."""
     now_ns = steady_ns()
     if now_ns - First.at_ns < AGAIN_S * 1e9:
         return True
@@ -152,14 +154,14 @@ own_handlers.add(handle)
 
 
 class SignalHandlerGuardCondition(GuardCondition):
-    """A guard condition that the shutdown by a signal triggers."""
+    """A guard condition triggered by a shutdown due to a signal."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__(callback=None, callback_group=None, context=context)
         guards[id(self.handle)] = self.handle
 
     def __del__(self) -> None:
-        with suppress(Exception):  # it may be destroyed, or half made
+        with suppress(Exception):  # it may be destroyed, or only partly created
             self.destroy()
 
     def destroy(self) -> None:

@@ -40,11 +40,11 @@ class MessageInfo(TypedDict):
 
 
 class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
-    """Receives the messages of a topic. Made by `Node.create_subscription`.
+    """Receives the messages of a topic. Created by `Node.create_subscription`.
 
     Attributes:
         msg_type: The class of its messages.
-        topic: The name it was made with.
+        topic: The name with which it was created.
         callback_group: Its group.
         qos_profile: Its profile.
         raw: Whether the callback gets bytes.
@@ -81,15 +81,15 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
 
     @property
     def __subscription(self) -> SubscriptionHandle:
-        """The handle, by the name that programs know it by."""
+        """The handle, under the name that programs know."""
         return self._handle
 
     @property
     def callback(self) -> Callable[..., object]:
-        """The function that is called with each message, or with a message and its `MessageInfo`.
+        """The function called with each message, or with a message and its `MessageInfo`.
 
         Raises:
-            RuntimeError: set to what takes other arguments.
+            RuntimeError: set to a function that takes other arguments.
         """
         return self._callback
 
@@ -120,7 +120,7 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
 
     @property
     def is_cft_supported(self) -> bool:
-        """Whether content filters can be set: they can."""
+        """Whether content filters are supported: they are."""
         return True
 
     def get_content_filter(self) -> ContentFilterOptions:
@@ -134,4 +134,4 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
 
 
 BaseSubscription = Subscription
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

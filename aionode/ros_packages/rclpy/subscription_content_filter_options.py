@@ -8,7 +8,7 @@ __all__ = ["ContentFilterOptions"]
 
 
 class ContentFilterOptions(NamedTuple):
-    """An expression that selects messages, and the values of its ``%0`` and so on."""
+    """An expression that selects messages, and the values of its ``%0``, ``%1`` and so on."""
 
     filter_expression: str
     expression_parameters: list[str]

@@ -38,10 +38,10 @@ class FutureState(Enum):
 
 
 class Future(Generic[T]):
-    """A result that comes later. Awaited in a callback, it lets the executor do other things.
+    """A result that arrives later. Awaiting it in a callback lets the executor do other things.
 
-    Done callbacks run at once, in the thread that sets the result; with an executor they are tasks
-    of it.
+    Done callbacks run at once, in the thread that sets the result; with an executor they become its
+    tasks.
     """
 
     def __init__(self, *, executor: ExecutorLike | None = None) -> None:
@@ -51,8 +51,8 @@ class Future(Generic[T]):
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: list[Callable[[], None]] = []
-        # Guards that each callback is called once: it is added before the end, or called after it.
-        # A handler of a signal may complete the future while this thread holds it.
+        # Ensures that each callback is called once: it is added before completion, or called after
+        # it. A signal handler may complete the future while this thread holds the lock.
         self._lock = threading.RLock()
         self._executor: weakref.ref[ExecutorLike] | None = None
         self._set_executor(executor)
@@ -69,7 +69,7 @@ class Future(Generic[T]):
             task = stepping.task
             if task is not None:
                 task._awaited = self
-            yield  # whatever else steps coroutines, such as asyncio, comes back at once
+            yield  # other drivers of coroutines, such as asyncio, resume it at once
         return self.result()
 
     def _pending(self) -> bool:
@@ -146,7 +146,7 @@ class Future(Generic[T]):
         self._executor = None if executor is None else weakref.ref(executor)
 
     def _wake_when_done(self, waker: Callable[[], None]) -> None:
-        """Call `waker` in the thread that completes the future; now if it is complete."""
+        """Call `waker` in the thread that completes the future; now if it is already complete."""
         with self._lock:
             if self._pending():
                 if waker not in self._wakers:
@@ -155,7 +155,7 @@ class Future(Generic[T]):
         waker()
 
     def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
-        """Call `callback` with this future when it is done; at once, if it is done already.
+        """Call `callback` with this future when it is done; immediately if it is already done.
 
         With an executor it becomes a task in either case.
         """
@@ -180,9 +180,9 @@ class Future(Generic[T]):
 
 
 class Task(Future[T]):
-    """A function or coroutine that an executor runs; calling it runs it, or takes it one step on.
+    """A function or coroutine that an executor runs; calling it runs it, or advances it one step.
 
-    Made by `Executor.create_task`.
+    Created by `Executor.create_task`.
     """
 
     def __init__(
@@ -203,10 +203,10 @@ class Task(Future[T]):
         self._awaited: Future[Any] | None = None
         self._executing = False
         self._scheduled = False  # whether a thread of a pool is about to run it
-        self._task_lock = threading.Lock()  # held by the thread that runs a step; none waits
+        self._task_lock = threading.Lock()  # held by the thread that runs a step; none waits for it
 
     def __call__(self) -> None:
-        """Run the function, or the coroutine up to its next wait, unless that is under way."""
+        """Run the function, or the coroutine up to its next wait, unless it is already running."""
         if not self._pending() or not self._task_lock.acquire(blocking=False):
             return
         try:
@@ -224,10 +224,10 @@ class Task(Future[T]):
                 self._finish()
                 self.set_exception(error)
                 return
-            except BaseException as error:  # the end of the program, which runs no step again
+            except BaseException as error:  # the end of the program, which runs no further step
                 self._finish()
                 self.set_exception(error)
-                self._exception_fetched = True  # whoever has called this gets it
+                self._exception_fetched = True  # the caller gets it
                 raise
             self._finish()
             self.set_result(result)
@@ -236,7 +236,7 @@ class Task(Future[T]):
             self._task_lock.release()
 
     def _step(self, coroutine: Coroutine[Any, Any, T]) -> None:
-        """Run a coroutine to its next wait, and have the executor resume it afterwards."""
+        """Run a coroutine to its next wait, and make the executor resume it afterwards."""
         self._awaited = None
         outer, stepping.task = stepping.task, self
         try:
@@ -251,7 +251,7 @@ class Task(Future[T]):
             self._awaited._wake_when_done(executor.wake)
 
     def _can_go_on(self) -> bool:
-        """Whether a step would get the task on."""
+        """Return whether a step would make progress."""
         return self._awaited is None or not self._awaited._pending()
 
     def _finish(self) -> None:
@@ -261,7 +261,7 @@ class Task(Future[T]):
         self._kwargs = {}
 
     def executing(self) -> bool:
-        """Return whether it runs right now."""
+        """Return whether it is running right now."""
         return self._executing
 
     def cancel(self) -> None:

@@ -21,7 +21,7 @@ class Time(core.Time):
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
         ValueError: a part is negative.
-        OverflowError: it does not fit 64 bits.
+        OverflowError: it does not fit into 64 bits.
     """
 
     __slots__ = ()
@@ -41,7 +41,7 @@ class Time(core.Time):
         return msg.Time(sec=sec, nanosec=nanosec)
 
     def to_datetime(self) -> datetime:
-        """Return it as a local time without zone; of rclpy in Lyrical.
+        """Return it as a local time without time zone; as in rclpy of Lyrical.
 
         Raises:
             TypeError: It is a time of the steady clock.
@@ -63,7 +63,7 @@ class Time(core.Time):
 
 
 def own(value: Any) -> Any:
-    """Return aionode's time or duration as rclpy's; other values as they are."""
+    """Return aionode's time or duration as rclpy's; return other values unchanged."""
     if isinstance(value, core.Time):
         return Time(nanoseconds=value.nanoseconds, clock_type=value.clock_type)
     return of_core(value)

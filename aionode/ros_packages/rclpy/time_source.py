@@ -78,7 +78,7 @@ class TimeSource:
         """Follow the parameter `use_sim_time` of a node, replacing the previous node.
 
         Raises:
-            TypeError: it is no node.
+            TypeError: it is not a node.
         """
         # Nodes have a time source themselves, so their module imports this one.
         if not hasattr(node, "declare_parameter"):
@@ -99,7 +99,7 @@ class TimeSource:
         node.add_on_set_parameters_callback(self._on_parameter_event)
 
     def detach_node(self) -> None:
-        """Follow no node.
+        """Stop following a node.
 
         Raises:
             RuntimeError: the node is gone, and its subscription cannot be destroyed.
@@ -116,7 +116,7 @@ class TimeSource:
         """Also set this clock.
 
         Raises:
-            ValueError: it is no clock of ROS time.
+            ValueError: it is not a ROS time clock.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
@@ -139,7 +139,7 @@ class TimeSource:
         node = self._get_node()
         if node is not None and not self._warned:
             self._warned = True
-            node.get_logger().warning(f"{problem}. Further ones are not told")
+            node.get_logger().warning(f"{problem}. Further ones are not reported")
 
     def _on_parameter_event(self, parameters: list[Parameter[Any]]) -> Any:
         for parameter in parameters:
@@ -162,7 +162,7 @@ class TimeSource:
 def watch_clock(subscription: EndpointInfo, context: CoreContext) -> None:
     """Warn in the log if nobody publishes simulated time; runs in the context's thread.
 
-    Whether a time has come is not known there: that depends on who spins.
+    Whether a time has arrived is not known there: that depends on which thread spins.
     """
     graph = context.graph
     ClockWatch(

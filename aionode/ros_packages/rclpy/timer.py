@@ -1,4 +1,4 @@
-"""Timers, and rates made of them."""
+"""Timers, and rates based on them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ __all__ = [
 
 
 class TimerInfo:
-    """When a callback was to be called, and when it was; for parameters annotated with this class.
+    """The scheduled and actual time of a call, for callback parameters annotated with this class.
 
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
@@ -63,10 +63,10 @@ class TimerInfo:
 
 
 class Timer(HandleOwner[TimerHandle]):
-    """Calls its callback at each period. Made by `Node.create_timer`.
+    """Calls its callback periodically. Created by `Node.create_timer`.
 
     Attributes:
-        callback: What is called.
+        callback: The function that is called.
         callback_group: Its group.
     """
 
@@ -93,7 +93,7 @@ class Timer(HandleOwner[TimerHandle]):
 
     @property
     def __timer(self) -> TimerHandle:
-        """The handle, by the name that programs know it by."""
+        """The handle, under the name that programs know."""
         return self._handle
 
     @property
@@ -103,7 +103,7 @@ class Timer(HandleOwner[TimerHandle]):
 
     @property
     def timer_period_ns(self) -> int:
-        """The period in nanoseconds; a new one holds from the next call on."""
+        """The period in nanoseconds; a new one applies from the next call on."""
         with self._handle:
             return self._handle.get_timer_period()
 
@@ -120,7 +120,7 @@ class Timer(HandleOwner[TimerHandle]):
     time_until_next_call = in_use(TimerHandle.time_until_next_call)
 
     def info(self, called: dict[str, int]) -> TimerInfo:
-        """Return what its handle has said of a call, in the timer's clock."""
+        """Return the handle's information about a call, in the timer's clock."""
         return TimerInfo(**called, clock_type=self._clock.clock_type)
 
     def info_argument(self, callback: Callable[..., object]) -> str | None:
@@ -136,14 +136,14 @@ class Timer(HandleOwner[TimerHandle]):
 
 
 class Rate:
-    """Lets a thread sleep until its next tick, while another one spins. Made by `create_rate`."""
+    """Lets a thread sleep until the next tick, while another spins. Created by `create_rate`."""
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer = timer
         self._is_shutdown = False
         self._is_destroyed = False
         self._event = threading.Event()
-        # Guards the number of sleepers; a handler of a signal may sleep, too.
+        # Guards the number of sleepers; a signal handler may sleep, too.
         self._lock = threading.RLock()
         self._num_sleepers = 0
         self._timer.callback = self._event.set
@@ -154,7 +154,7 @@ class Rate:
         self.destroy()
 
     def destroy(self) -> None:
-        """Wake the threads that sleep. Use `Node.destroy_rate`."""
+        """Wake the sleeping threads. Use `Node.destroy_rate`."""
         self._is_destroyed = True
         self._event.set()
 
@@ -190,4 +190,4 @@ class Rate:
 
 
 BaseTimer = Timer
-"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
+"""The base of this class and the asynchronous one in rclpy of Lyrical, which are one class here."""

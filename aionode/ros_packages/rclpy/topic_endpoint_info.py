@@ -16,7 +16,7 @@ __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """The kind of an endpoint; those of services are of Lyrical, where it is `EndpointTypeEnum`."""
+    """The kind of an endpoint; Lyrical, whose name is `EndpointTypeEnum`, added services."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -26,7 +26,7 @@ class TopicEndpointTypeEnum(IntEnum):
 
 
 def from_dict(kind: Any) -> Any:
-    """Return what makes an object of a dict, and leaves other values for the check."""
+    """Return a function that creates an object from a dict, and returns other values unchanged."""
     return lambda value: kind(**value) if isinstance(value, dict) else value
 
 
@@ -37,8 +37,8 @@ class TopicEndpointInfo:
         node_name, node_namespace: Its node.
         topic_type: The name of its type.
         topic_type_hash: The hash of its type.
-        endpoint_type: What it is.
-        endpoint_gid: What identifies it, as numbers.
+        endpoint_type: Publisher or subscription.
+        endpoint_gid: Its gid, as numbers.
         qos_profile: Its profile.
     """
 

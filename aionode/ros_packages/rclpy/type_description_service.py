@@ -1,4 +1,4 @@
-"""The service through which other nodes ask for the definition of a type that a node uses."""
+"""The service by which other nodes request the definition of a type that a node uses."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 
 
 class TypeDescriptionService:
-    """The service of one node, unless its parameter says otherwise.
+    """The service of one node, unless a parameter disables it.
 
     Attributes:
         service_name: Its name.
-        enabled: Whether it is there.
+        enabled: Whether it exists.
     """
 
     def __init__(self, node: NodeLike) -> None:
@@ -53,14 +53,14 @@ class TypeDescriptionService:
             )
 
     def destroy(self) -> None:
-        """Forget the service, which the node destroys."""
+        """Drop the service, which the node destroys."""
         self._service = None
 
     def _service_callback(self, request: Any, response: Any) -> Any:
         node = self._node_weak_ref()
         if node is None:
             raise ReferenceError("Expected valid node weak reference")
-        from aionode.engine.type_descriptions import describe_type, type_of  # rarely asked for
+        from aionode.engine.type_descriptions import describe_type, type_of  # rarely used
 
         entities = (*node._publishers, *node._subscriptions, *node._services, *node._clients)
         used = [aionode_class(type_of(entity)) for entity in entities]

@@ -14,11 +14,11 @@ PREFIX = "RIHS"
 
 
 class Checked:
-    """An attribute whose values have to be of one type.
+    """An attribute whose values must have a type.
 
     Args:
         kind: The type.
-        convert: Makes a value of that type from others.
+        convert: Converts other values to that type.
     """
 
     def __init__(self, kind: Any, convert: Callable[[Any], Any] | None = None) -> None:
@@ -42,7 +42,7 @@ class TypeHash:
     """A hash of a type's definition.
 
     Attributes:
-        version: How it was made; below 1 it is invalid.
+        version: The version of the algorithm; below 1 it is invalid.
         value: Its 32 bytes.
     """
 
@@ -57,7 +57,7 @@ class TypeHash:
 
     @classmethod
     def from_text(cls, text: str) -> TypeHash:
-        """Return the hash in a text such as ``RIHS01_…``; an invalid one for other texts."""
+        """Parse a hash from a text such as ``RIHS01_…``; other texts give an invalid hash."""
         if not text.startswith(PREFIX) or "_" not in text:
             return cls()
         version, _, digits = text.removeprefix(PREFIX).partition("_")

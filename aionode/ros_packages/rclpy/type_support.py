@@ -53,8 +53,8 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
     """Raise unless a class is a message, service or action of either family.
 
     Raises:
-        AttributeError: it is none.
-        NoTypeSupportImportedException: it has no type support, and its package cannot give it any.
+        AttributeError: it is none of them.
+        NoTypeSupportImportedException: it has no type support, and its package cannot provide it.
     """
     if is_own(msg_or_srv_type):
         return
@@ -75,7 +75,7 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
     """Raise unless a class is a message.
 
     Raises:
-        AttributeError: it is no ROS 2 type.
+        AttributeError: it is not a ROS 2 type.
         RuntimeError: it is a service or action.
     """
     check_for_type_support(msg_type)
@@ -90,7 +90,7 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
     """Raise unless a class is a service.
 
     Raises:
-        AttributeError: it is no ROS 2 type.
+        AttributeError: it is not a ROS 2 type.
         RuntimeError: it is a message or action.
     """
     check_for_type_support(srv_type)

@@ -56,4 +56,4 @@ def wait_for_message(
 
 
 def ignore(msg: Any) -> None:
-    """Do nothing: the message is taken by hand."""
+    """Do nothing: the message is taken explicitly."""

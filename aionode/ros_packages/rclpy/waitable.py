@@ -1,4 +1,4 @@
-"""Waitables: entities of one's own that executors wait for."""
+"""Waitables: custom entities that executors wait for."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class NumberOfEntities:
 
 
 class Waitable(Generic[T]):
-    """Base of entities made of handles that an executor waits for.
+    """The base class of entities made of handles that an executor waits for.
 
     Attributes:
         callback_group: Its group.
@@ -95,7 +95,7 @@ class Waitable(Generic[T]):
         self._futures.remove(future)
 
     def is_ready(self, wait_set: WaitSet) -> bool:
-        """Return whether a handle that it added is ready."""
+        """Return whether one of its handles is ready."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> T:
@@ -103,11 +103,11 @@ class Waitable(Generic[T]):
         raise NotImplementedError("Must be implemented by subclass")
 
     async def execute(self, taken_data: T) -> None:
-        """Do the work, with what `take_data` returned."""
+        """Do the work, with the result of `take_data`."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of handles it adds."""
+        """Return the number of handles that it adds."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:

@@ -1,4 +1,4 @@
-"""The package that programs import as `ros2_numpy`: messages as numpy arrays, and back."""
+"""Programs import this as `ros2_numpy`: messages as numpy arrays, and back."""
 
 from __future__ import annotations
 

@@ -35,12 +35,12 @@ Vector3 = message_class("geometry_msgs/msg/Vector3")
 
 
 def of_each(array: Array, rank: int, make: Callable[[Array], Any]) -> Any:
-    """Return what is made of an array, or of each of the arrays in it.
+    """Return the message for an array, or the messages for each of the arrays in it.
 
     Args:
         array: Its last `rank` dimensions are those of one message.
         rank: The number of these dimensions.
-        make: Makes a message.
+        make: Creates a message.
     """
     shape = array.shape[:-rank]
     if not shape:
@@ -52,19 +52,19 @@ def of_each(array: Array, rank: int, make: Callable[[Array], Any]) -> Any:
 
 
 def xyz(cls: type[Any]) -> Callable[[Array], Any]:
-    """Return what makes a message with x, y and z of an array."""
+    """Return a function that creates a message with x, y and z from an array."""
     return lambda array: cls(**dict(zip("xyz", map(float, array), strict=True)))
 
 
 @converts_to_numpy(Vector3)
 def vector3_to_numpy(msg: Any, hom: bool = False) -> Array:
-    """Return x, y and z, and 0 if `hom` asks for homogeneous coordinates."""
+    """Return x, y and z, followed by 0 if `hom` requests homogeneous coordinates."""
     return np.array([msg.x, msg.y, msg.z, *[0.0] * hom])
 
 
 @converts_from_numpy(Vector3)
 def numpy_to_vector3(arr: Array) -> Any:
-    """Return a vector, or an array of them, of three coordinates or four with 0 as the last.
+    """Return a vector, or an array of them, from three coordinates, or four with 0 as the last.
 
     Raises:
         AssertionError: The fourth coordinate is not 0.
@@ -78,13 +78,13 @@ def numpy_to_vector3(arr: Array) -> Any:
 
 @converts_to_numpy(Point)
 def point_to_numpy(msg: Any, hom: bool = False) -> Array:
-    """Return x, y and z, and 1 if `hom` asks for homogeneous coordinates."""
+    """Return x, y and z, followed by 1 if `hom` requests homogeneous coordinates."""
     return np.array([msg.x, msg.y, msg.z, *[1.0] * hom])
 
 
 @converts_from_numpy(Point)
 def numpy_to_point(arr: Array) -> Any:
-    """Return a point, or an array of them, of three coordinates or four homogeneous ones."""
+    """Return a point, or an array of them, from three coordinates, or four homogeneous ones."""
     if arr.shape[-1] == 4:
         arr = arr[..., :-1] / arr[..., -1:]
     return of_each(arr, 1, xyz(Point))
@@ -98,7 +98,7 @@ def quat_to_numpy(msg: Any) -> Array:
 
 @converts_from_numpy(Quaternion)
 def numpy_to_quat(arr: Array) -> Any:
-    """Return a quaternion, or an array of them, of x, y, z and w.
+    """Return a quaternion, or an array of them, from x, y, z and w.
 
     Raises:
         AssertionError: There are not four of them.
@@ -110,7 +110,7 @@ def numpy_to_quat(arr: Array) -> Any:
 
 
 def of_matrices(arr: Array, make: Callable[[Array, Any], Any]) -> Any:
-    """Return what `make` makes of the position and the quaternion of each 4x4 matrix.
+    """Return the results of `make` for the position and quaternion of each 4x4 matrix.
 
     Raises:
         AssertionError: The matrices are not 4x4.
@@ -132,7 +132,7 @@ def transform_to_numpy(msg: Any) -> Array:
 
 @converts_from_numpy(Transform)
 def numpy_to_transform(arr: Array) -> Any:
-    """Return a transform, or an array of them, of 4x4 matrices.
+    """Return a transform, or an array of them, from 4x4 matrices.
 
     Raises:
         AssertionError: The matrices are not 4x4.
@@ -152,7 +152,7 @@ def pose_to_numpy(msg: Any) -> Array:
 
 @converts_from_numpy(Pose)
 def numpy_to_pose(arr: Array) -> Any:
-    """Return a pose, or an array of them, of 4x4 matrices.
+    """Return a pose, or an array of them, from 4x4 matrices.
 
     Raises:
         AssertionError: The matrices are not 4x4.
@@ -165,13 +165,13 @@ def numpy_to_pose(arr: Array) -> Any:
 
 
 def matrix_of(translation: Array, rotation: Any) -> Array:
-    """Return the 4x4 matrix of a translation after a rotation."""
+    """Return the 4x4 matrix of a rotation followed by a translation."""
     matrix = quaternion_matrix(quat_to_numpy(rotation))
     matrix[:3, 3] = translation
     return matrix
 
 
 def check_shape(array: Array, shape: tuple[int, ...]) -> None:
-    """Raise AssertionError unless the last dimensions of an array are these."""
+    """Raise AssertionError unless the last dimensions of an array have this shape."""
     if array.shape[-len(shape) :] != shape:
-        raise AssertionError(f"an array of shape {array.shape}; it has to end in {shape}")
+        raise AssertionError(f"the array has the shape {array.shape}; it has to end in {shape}")

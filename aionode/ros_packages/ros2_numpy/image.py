@@ -32,10 +32,10 @@ name_to_dtypes: dict[str, tuple[type[Any], int]] = {
 
 @converts_to_numpy(Image)
 def image_to_numpy(msg: Any) -> npt.NDArray[Any]:
-    """Return the pixels over the bytes of the message: rows, columns, and channels if several.
+    """Return the pixels, sharing the message's bytes: rows, columns, and channels if several.
 
     Raises:
-        TypeError: The encoding is unknown, or the data too short.
+        TypeError: The encoding is unknown, or the data is too short.
     """
     dtype, channels = channels_of(msg.encoding)
     size = dtype.itemsize
@@ -50,19 +50,19 @@ def image_to_numpy(msg: Any) -> npt.NDArray[Any]:
 
 @converts_from_numpy(Image)
 def numpy_to_image(arr: npt.NDArray[Any], encoding: str) -> Any:
-    """Return an image of rows, columns, and channels if there are several.
+    """Return an image from rows, columns, and channels if there are several.
 
     Raises:
-        TypeError: The encoding is unknown, or does not fit the array.
+        TypeError: The encoding is unknown, or does not match the array.
     """
     dtype, channels = channels_of(encoding)
     if arr.ndim not in {2, 3}:
-        raise TypeError(f"an array of {arr.ndim} dimensions; an image has two or three")
+        raise TypeError(f"the array has {arr.ndim} dimensions; an image has two or three")
     given = 1 if arr.ndim == 2 else arr.shape[2]
     if given != channels:
-        raise TypeError(f"an array of {given} channels; {encoding} has {channels}")
+        raise TypeError(f"the array has {given} channels; {encoding} has {channels}")
     if arr.dtype.type is not dtype.type:
-        raise TypeError(f"an array of {arr.dtype}; {encoding} has {dtype}")
+        raise TypeError(f"the array has the type {arr.dtype}; {encoding} has {dtype}")
     whole = np.ascontiguousarray(arr)
     order = whole.dtype.byteorder
     image = Image(encoding=encoding, height=arr.shape[0], width=arr.shape[1])
@@ -75,6 +75,8 @@ def numpy_to_image(arr: npt.NDArray[Any], encoding: str) -> Any:
 def channels_of(encoding: str) -> tuple[np.dtype[Any], int]:
     """Return the type and number of the channels of an encoding."""
     if encoding not in name_to_dtypes:
-        raise TypeError(f"the encoding {encoding!r} is unknown; such as rgb8, mono16 and 32FC1 fit")
+        raise TypeError(
+            f"the encoding {encoding!r} is unknown; use one such as rgb8, mono16 or 32FC1"
+        )
     dtype, channels = name_to_dtypes[encoding]
     return np.dtype(dtype), channels

@@ -1,4 +1,4 @@
-"""Maps of occupied cells as masked arrays."""
+"""Occupancy grids as masked arrays."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ UNKNOWN = -1
 
 @converts_to_numpy(OccupancyGrid)
 def occupancygrid_to_numpy(msg: Any) -> npt.NDArray[np.int8]:
-    """Return the cells, of which those that are unknown, -1, are masked."""
+    """Return the cells; unknown ones (-1) are masked."""
     cells = np.asarray(msg.data, dtype=np.int8).reshape(msg.info.height, msg.info.width)
     return np.ma.array(cells, mask=cells == UNKNOWN, fill_value=UNKNOWN)
 
 
 @converts_from_numpy(OccupancyGrid)
 def numpy_to_occupancy_grid(arr: npt.NDArray[np.int8], info: Any = None) -> Any:
-    """Return a map of rows and columns of int8; masked cells are as they are stored.
+    """Return a map from rows and columns of int8; masked cells keep their stored value.
 
     Args:
         arr: The cells.
-        info: What the map has besides; its width and height are set.
+        info: The map's other metadata; its width and height are set.
 
     Raises:
-        TypeError: The array has another form or type.
+        TypeError: The array has another shape or type.
     """
     if arr.ndim != 2:
-        raise TypeError(f"an array of {arr.ndim} dimensions; a map has two")
+        raise TypeError(f"the array has {arr.ndim} dimensions; a map has two")
     if arr.dtype != np.int8:
-        raise TypeError(f"an array of {arr.dtype}; a map has int8")
+        raise TypeError(f"the array has the type {arr.dtype}; a map has int8")
     cells = arr.data if isinstance(arr, np.ma.MaskedArray) else arr
     grid = OccupancyGrid(info=info or MapMetaData())
     grid.data = array("b", np.asarray(cells).tobytes())

@@ -36,7 +36,7 @@ PointCloud2 = message_class("sensor_msgs/msg/PointCloud2")
 PointField = message_class("sensor_msgs/msg/PointField")
 
 DUMMY_FIELD_PREFIX = "__"
-"""How the names of fields begin that stand for bytes between those of a cloud."""
+"""Prefix of the names of fields for padding bytes between those of a cloud."""
 
 type_mappings = [
     (getattr(PointField, name.upper()), np.dtype(name))
@@ -49,7 +49,7 @@ pftype_sizes = {number: dtype.itemsize for number, dtype in type_mappings}
 
 @converts_to_numpy(PointField, plural=True)
 def fields_to_dtype(fields: Sequence[Any], point_step: int) -> list[Any]:
-    """Return the type of a point as list of names and types; bytes between fields have names, too.
+    """Return the type of a point as a list of names and types; padding bytes have names, too.
 
     Args:
         fields: The fields of a cloud, in the order of their offsets.
@@ -73,21 +73,21 @@ def fields_of(dtype: np.dtype[Any]) -> Mapping[str, Any]:
 
 @converts_from_numpy(PointField, plural=True)
 def dtype_to_fields(dtype: np.dtype[Any]) -> list[Any]:
-    """Return the fields of a cloud whose points are of a structured type.
+    """Return the fields of a cloud whose points have a structured type.
 
     Raises:
-        TypeError: It is not structured, or has what no field can have.
+        TypeError: It is not structured, or contains a type that no field can have.
     """
     return [from_aionode(field) for field in fields_from_dtype(dtype)]
 
 
 @converts_to_numpy(PointCloud2)
 def pointcloud2_to_array(cloud_msg: Any, squeeze: bool = True) -> Array:
-    """Return the points as structured array over the bytes of the message.
+    """Return the points as a structured array that shares the message's bytes.
 
     Args:
         cloud_msg: The cloud.
-        squeeze: Leave out the dimension of rows if there is one row.
+        squeeze: Remove the dimension of rows if there is only one row.
 
     Raises:
         TypeError: The message has less data than its size needs.
@@ -105,7 +105,7 @@ def pointcloud2_to_array(cloud_msg: Any, squeeze: bool = True) -> Array:
 
 @converts_from_numpy(PointCloud2)
 def array_to_pointcloud2(cloud_arr: Array, stamp: Any = None, frame_id: str | None = None) -> Any:
-    """Return a cloud of a structured array with one or two dimensions.
+    """Return a cloud from a structured array with one or two dimensions.
 
     Args:
         cloud_arr: The points.
@@ -128,14 +128,14 @@ def array_to_pointcloud2(cloud_arr: Array, stamp: Any = None, frame_id: str | No
 
 
 def merge_rgb_fields(cloud_arr: Array) -> Array:
-    """Return an array whose fields r, g and b are one field rgb, three bytes in a float32."""
+    """Combine the fields r, g and b into one field rgb, three bytes in a float32."""
     r, g, b = (cloud_arr[name].astype(np.uint32) for name in "rgb")
     merged = (r << 16 | g << 8 | b).view(np.float32)
     return with_fields(cloud_arr, without={"r", "g", "b"}, added={"rgb": merged})
 
 
 def split_rgb_field(cloud_arr: Array) -> Array:
-    """Return an array whose field rgb is three fields r, g and b."""
+    """Split the field rgb into three fields r, g and b."""
     rgb = cloud_arr["rgb"].copy().view(np.uint32)
     parts = {
         name: (rgb >> shift & 255).astype(np.uint8)
@@ -165,7 +165,7 @@ def get_xyz_points(
 
     Args:
         cloud_array: The points.
-        remove_nans: Leave out points of which a coordinate is not finite.
+        remove_nans: Omit points with a coordinate that is not finite.
         dtype: The type of the coordinates.
     """
     points = np.stack([cloud_array[name] for name in "xyz"], axis=-1).astype(dtype)

@@ -14,7 +14,7 @@ FROM_NUMPY: dict[tuple[type[Any], bool], Callable[..., Any]] = {}
 
 
 def converts_to_numpy(msgtype: type[Any], plural: bool = False) -> Callable[[Converter], Converter]:
-    """Return a decorator for what `numpify` calls.
+    """Return a decorator for a function that `numpify` calls.
 
     Args:
         msgtype: The class of the messages.
@@ -31,7 +31,7 @@ def converts_to_numpy(msgtype: type[Any], plural: bool = False) -> Callable[[Con
 def converts_from_numpy(
     msgtype: type[Any], plural: bool = False
 ) -> Callable[[Converter], Converter]:
-    """Return a decorator for what `msgify` calls; see `converts_to_numpy`."""
+    """Return a decorator for a function that `msgify` calls; see `converts_to_numpy`."""
 
     def decorate(converter: Converter) -> Converter:
         FROM_NUMPY[msgtype, plural] = converter
@@ -41,7 +41,7 @@ def converts_from_numpy(
 
 
 def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return a message, or a sequence of messages, as numpy has it; None for None.
+    """Return a message, or a sequence of messages, in numpy form; None for None.
 
     Args:
         msg: The message.
@@ -56,28 +56,28 @@ def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
     converter = TO_NUMPY.get((type(msg), False))
     if converter is None and isinstance(msg, Sequence):
         if not msg:
-            raise ValueError("an empty sequence; it does not tell the type of its messages")
+            raise ValueError("the sequence is empty, so the type of its messages is unknown")
         converter = TO_NUMPY.get((type(msg[0]), True))
     if converter is None:
-        raise ValueError(f"{type(msg).__name__} cannot be converted; {known(TO_NUMPY)} can")
+        raise ValueError(f"{type(msg).__name__} cannot be converted; use one of {known(TO_NUMPY)}")
     return converter(msg, *args, **kwargs)
 
 
 def msgify(msg_type: type[Any], numpy_obj: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return a message of a type, made of an array.
+    """Return a message of a type, created from an array.
 
     Args:
         msg_type: The class of the message.
         numpy_obj: The array.
         args: What the converter takes besides.
-        kwargs: The same by name; ``plural=True`` makes a sequence of messages.
+        kwargs: Keyword arguments of the converter; ``plural=True`` creates a sequence of messages.
 
     Raises:
         ValueError: No converter is known.
     """
     converter = FROM_NUMPY.get((msg_type, kwargs.pop("plural", False)))
     if converter is None:
-        raise ValueError(f"{msg_type.__name__} cannot be made; {known(FROM_NUMPY)} can")
+        raise ValueError(f"{msg_type.__name__} cannot be created; use one of {known(FROM_NUMPY)}")
     return converter(numpy_obj, *args, **kwargs)
 
 

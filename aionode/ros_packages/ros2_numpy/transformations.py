@@ -29,7 +29,7 @@ def quaternion_imag(quaternion: npt.ArrayLike) -> npt.NDArray[Any]:
 
 
 def vector_product(v0: npt.ArrayLike, v1: npt.ArrayLike, axis: int = 0) -> npt.NDArray[Any]:
-    """Return the vectors perpendicular to others, whose components are along an axis."""
+    """Return the vectors perpendicular to pairs of vectors, whose components are along an axis."""
     return np.cross(np.asarray(v0), np.asarray(v1), axis=axis)
 
 
@@ -41,7 +41,7 @@ def angle_between_vectors(
     Args:
         v0: Vectors.
         v1: As many others.
-        directed: Whether opposite vectors are half a turn apart, and not the same line.
+        directed: Whether opposite vectors are half a turn apart, rather than the same line.
         axis: The axis of their components.
     """
     first, second = np.asarray(v0, dtype=float), np.asarray(v1, dtype=float)
@@ -51,6 +51,6 @@ def angle_between_vectors(
 
 
 def is_same_quaternion(q0: npt.ArrayLike, q1: npt.ArrayLike) -> bool:
-    """Return whether two quaternions are the same turn: equal, or each other's negative."""
+    """Return whether two quaternions are the same rotation: equal, or each other's negative."""
     first, second = np.asarray(q0, dtype=float), np.asarray(q1, dtype=float)
     return bool(np.allclose(first, second) or np.allclose(first, -second))

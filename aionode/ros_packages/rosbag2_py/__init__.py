@@ -60,7 +60,7 @@ __all__ = [
 DEFAULT_STORAGE: Final = "mcap"
 
 
-# Values, with rosbag2's names
+# Value classes, with rosbag2's names
 
 
 class StorageOptions(msgspec.Struct):
@@ -113,7 +113,7 @@ class StorageFilter(msgspec.Struct):
 
 
 class ReadOrderSortBy:
-    """By what messages are sorted."""
+    """The key by which messages are sorted."""
 
     ReceivedTimestamp = 0
     PublishedTimestamp = 1
@@ -128,7 +128,7 @@ class ReadOrder(msgspec.Struct):
 
 
 class MessageDefinition(msgspec.Struct):
-    """The definition of a type, as bags have it."""
+    """The definition of a type, as stored in bags."""
 
     topic_type: str = ""
     encoding: str = ""
@@ -139,7 +139,7 @@ class MessageDefinition(msgspec.Struct):
 class TopicMetadata:
     """One topic of a bag.
 
-    Before Jazzy there was no `id`: with the name in its place, the rest moves up.
+    Before Jazzy there was no `id`: with the name in its place, the other arguments move up.
     """
 
     def __init__(
@@ -171,7 +171,7 @@ class TopicMetadata:
         )
 
     def __eq__(self, other: object) -> bool:
-        """Whether `other` is such a topic, too."""
+        """Whether `other` is an equal topic."""
         return isinstance(other, TopicMetadata) and self.equals(other)
 
     __hash__ = None  # type: ignore[assignment]  # as rosbag2's
@@ -194,7 +194,7 @@ class FileInformation(msgspec.Struct):
 
 
 class BagMetadata(msgspec.Struct):
-    """A bag as ``metadata.yaml`` describes it."""
+    """A bag as described by ``metadata.yaml``."""
 
     version: int = 9
     bag_size: int = 0
@@ -235,11 +235,13 @@ class SequentialReader:
         """Open a bag.
 
         Raises:
-            RuntimeError: it is no bag, or a damaged one, or another format is asked for.
+            RuntimeError: it is not a bag, it is damaged, or another format is requested.
         """
         wanted = (converter_options or ConverterOptions()).output_serialization_format
         if wanted not in {"", "cdr"}:
-            raise RuntimeError(f"rosbag2_py: no converter to {wanted!r}; messages are given as cdr")
+            raise RuntimeError(
+                f"rosbag2_py: no converter to {wanted!r}; messages are only available as cdr"
+            )
         try:
             self._bag = bag.open(storage_options.uri)
         except (AionodeError, OSError) as error:
@@ -269,7 +271,7 @@ class SequentialReader:
         topics = [name for name in self._opened().topics if self._filter.admits(name)]
         end = None if self._end_ns < 0 else PlainTime(nanoseconds=self._end_ns + 1)
         start = PlainTime(nanoseconds=self._from_ns)
-        # In reverse, time is sought from the end: what is later than the given time is left out.
+        # In reverse, time is sought from the end: later messages are left out.
         if self._order.reverse and self._from_ns:
             start, end = PlainTime(nanoseconds=0), PlainTime(nanoseconds=self._from_ns + 1)
         records: Any = self._opened().read(topics=topics, start=start, end=end)
@@ -305,12 +307,12 @@ class SequentialReader:
         return record.topic, bytes(record.raw), record.time_ns
 
     def seek(self, timestamp: int) -> None:
-        """Go on with the first message at or after a time in nanoseconds."""
+        """Continue with the first message at or after a time in nanoseconds."""
         self._from_ns = int(timestamp)
         self._restart()
 
     def set_read_order(self, order: ReadOrder) -> bool:
-        """Read in another order; whether that is possible, which it is."""
+        """Set the order of reading; return whether that is possible, which it always is."""
         self._order = order
         self._restart()
         return True
@@ -343,12 +345,12 @@ class SequentialReader:
         return metadata_of(self._opened())
 
     def has_next_file(self) -> bool:
-        """Whether there is another file: all are read as one."""
+        """Whether there is another file: never, since all are read as one."""
         return False
 
 
 SequentialCompressionReader = SequentialReader
-"""Compressed bags are read by the same class."""
+"""The same class reads compressed bags."""
 
 
 def topics_of(opened: bag.Bag) -> list[TopicInformation]:
@@ -370,7 +372,7 @@ def topics_of(opened: bag.Bag) -> list[TopicInformation]:
 
 
 def metadata_of(opened: bag.Bag) -> BagMetadata:
-    """Return what is known of a bag."""
+    """Return the metadata of a bag."""
     path, known = opened.path, opened.metadata
     files = (
         [file for file in sorted(path.rglob("*")) if file.is_file()] if path.is_dir() else [path]
@@ -406,13 +408,13 @@ def storage_of(files: list[Path]) -> str:
 
 
 class Info:
-    """Reads what is known of a bag."""
+    """Reads the metadata of a bag."""
 
-    def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:  # seen from the files
-        """Return what ``metadata.yaml`` says of a bag.
+    def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:  # taken from the files
+        """Return the contents of a bag's ``metadata.yaml``.
 
         Raises:
-            RuntimeError: it is no bag, or a damaged one.
+            RuntimeError: it is not a bag, or it is damaged.
         """
         reader = SequentialReader()
         reader.open_uri(uri)
@@ -438,15 +440,17 @@ class SequentialWriter:
         """Create a bag in a folder that does not exist yet.
 
         Raises:
-            RuntimeError: the folder exists, or another format than MCAP or CDR is asked for.
+            RuntimeError: the folder exists, or a format other than MCAP or CDR is requested.
         """
         wanted = (converter_options or ConverterOptions()).output_serialization_format
         if wanted not in {"", "cdr"}:
-            raise RuntimeError(f"rosbag2_py: no converter to {wanted!r}; messages are given as cdr")
+            raise RuntimeError(
+                f"rosbag2_py: no converter to {wanted!r}; messages are only available as cdr"
+            )
         if storage_options.storage_id not in {"", DEFAULT_STORAGE}:
             raise RuntimeError(
-                f"No storage could be initialized from the inputs. aionode writes mcap, and not "
-                f"{storage_options.storage_id}; leave storage_id out, or use 'mcap'"
+                "No storage could be initialized from the inputs. aionode writes mcap, not "
+                f"{storage_options.storage_id}; omit storage_id, or use 'mcap'"
             )
         try:
             self._writer = bag.BagWriter(
@@ -459,7 +463,7 @@ class SequentialWriter:
             raise RuntimeError(str(error)) from error
 
     def close(self) -> None:
-        """End the bag."""
+        """Finish the bag."""
         if self._writer is not None:
             self._writer.close()
             self._writer = None
@@ -481,11 +485,11 @@ class SequentialWriter:
     def create_topic(
         self, topic: TopicMetadata, message_definition: MessageDefinition | None = None
     ) -> None:
-        """Add a topic; again has no effect.
+        """Add a topic; adding it again has no effect.
 
         Args:
             topic: Its name and type.
-            message_definition: The definition of its type, if it is no type of this program.
+            message_definition: The definition of its type, if this program does not know it.
         """
         writer = self._opened()
         definition = message_definition or definition_by_name(topic.type)
@@ -502,7 +506,7 @@ class SequentialWriter:
         )
 
     def remove_topic(self, topic: TopicMetadata) -> None:
-        """Accept no more messages of a topic."""
+        """Accept no further messages of a topic."""
         self._numbers.pop(topic.name, None)
 
     def write(
@@ -519,7 +523,7 @@ class SequentialWriter:
             topic_name: A topic that was created.
             message: Its CDR bytes.
             time_stamp: When it was received, in nanoseconds.
-            send_timestamp: When it was sent; the same if not given.
+            send_timestamp: When it was sent; `time_stamp` if not given.
             sequence_number: Its number.
 
         Raises:
@@ -541,16 +545,16 @@ class SequentialWriter:
         )
 
     def take_snapshot(self) -> bool:
-        """Return whether a snapshot was written; there is no snapshot mode here."""
+        """Return whether a snapshot was written: never, since there is no snapshot mode here."""
         return False
 
     def split_bagfile(self) -> None:
-        """Go on in a new file."""
+        """Continue in a new file."""
         self._opened().split(0)
 
 
 def definition_by_name(typename: str) -> MessageDefinition:
-    """Return the definition of a type by its name; without a text if it is unknown."""
+    """Return the definition of a type by its name; without text if it is unknown."""
     try:
         cls = get_interface(typename)
     except InterfaceNotFoundError:

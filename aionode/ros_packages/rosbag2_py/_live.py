@@ -1,6 +1,7 @@
-"""Programs import these as `rosbag2_py.Recorder` and `Player`: each runs in a thread of its own.
+"""Programs import these as `rosbag2_py.Recorder` and `Player`: each runs in its own thread.
 
-Their methods may be called from any thread. They own no signals, and the program goes on meanwhile.
+Their methods may be called from any thread. They handle no signals, and the program continues
+meanwhile.
 """
 
 from __future__ import annotations
@@ -32,13 +33,13 @@ __all__ = [
 ]
 
 CHECK_S: Final = 0.1
-"""Time between two looks of a wait for Ctrl-C, which a lock does not let through everywhere."""
+"""Interval at which a wait checks for Ctrl-C, since a lock does not let it through everywhere."""
 
-NOT_CONFIGURED: Final = "give it storage options, and options, when it is created"
+NOT_CONFIGURED: Final = "pass storage options, and options, when it is created"
 
 
 class ServiceRequestsSource:
-    """The events to take service requests from."""
+    """The events from which service requests are taken."""
 
     SERVICE_INTROSPECTION = "service_introspection"
     CLIENT_INTROSPECTION = "client_introspection"
@@ -52,7 +53,7 @@ class MessageOrder:
 
 
 class RecordOptions(msgspec.Struct):
-    """The topics to record, and the way to record them."""
+    """The topics to record, and how to record them."""
 
     all_topics: bool = False
     all_services: bool = False
@@ -96,7 +97,7 @@ class RecordOptions(msgspec.Struct):
         return ({"*": depth} if depth > 0 else {}) | self.repeat_transient_local_messages
 
     def selection(self) -> bag.Selection:
-        """Return which topics are wanted."""
+        """Return the topics to record."""
         every = [kind for kind in ("topic", "service", "action") if getattr(self, f"all_{kind}s")]
         return bag.Selection(
             topics=self.topics,
@@ -113,7 +114,7 @@ class RecordOptions(msgspec.Struct):
 
 
 class PlayOptions(msgspec.Struct):
-    """The topics to play, and the way: times in seconds, apart from the last, in nanoseconds."""
+    """The topics to play, and how: times are in seconds, except the last, in nanoseconds."""
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -148,7 +149,7 @@ class PlayOptions(msgspec.Struct):
     playback_until_timestamp: int = -1
 
     def selection(self) -> bag.Selection:
-        """Return which topics are wanted; without any named, all."""
+        """Return the topics to play; without any named, all."""
         named = (
             self.topics_to_filter,
             self.services_to_filter,
@@ -171,21 +172,21 @@ class PlayOptions(msgspec.Struct):
         )
 
     def clock_with(self) -> list[str]:
-        """Return the topics with whose messages ``/clock`` is published."""
+        """Return the topics whose messages also trigger ``/clock``."""
         if not self.clock_publish_on_topic_publish:
             return []
         return self.clock_topics or ["*"]
 
 
 class LiveThread:
-    """Runs a recorder or a player in an event loop and a context of its own, in a thread.
+    """Runs a recorder or a player in its own event loop and context, in a thread.
 
     Args:
         kind: Its class.
         make: Returns it, for a context.
 
     Raises:
-        RuntimeError: it cannot begin: the folder of a bag exists, or there is no bag.
+        RuntimeError: it cannot start: the folder of a bag exists, or there is no bag.
     """
 
     running: ClassVar[set[LiveThread]] = set()
@@ -223,7 +224,7 @@ class LiveThread:
             await self._stopping.wait()
 
     def call(self, work: Callable[[], Any]) -> Any:
-        """Return what a function, or the coroutine that it returns, gives in the loop's thread.
+        """Call a function in the loop's thread, and return its result, awaiting a coroutine.
 
         Raises:
             RuntimeError: it failed, or the thread has ended.
@@ -245,7 +246,7 @@ class LiveThread:
         return asyncio.run_coroutine_threadsafe(work, self._loop)
 
     def stop(self) -> None:
-        """End it, once it has begun, and wait until all is written."""
+        """End it, once it has started, and wait until everything is written."""
         concurrent.futures.wait([self._entered])
         if not self._ended.done():
             self._loop.call_soon_threadsafe(self._stopping.set)
@@ -255,7 +256,7 @@ class LiveThread:
         """Wait until somebody stops it; Ctrl-C stops it, too, and is raised.
 
         Raises:
-            KeyboardInterrupt: after all is written.
+            KeyboardInterrupt: after everything is written.
         """
         try:
             awaited(self._ended)
@@ -265,10 +266,10 @@ class LiveThread:
 
 
 def awaited(future: concurrent.futures.Future[Any], timeout_sec: float | None = None) -> Any:
-    """Return the result of a future; Ctrl-C is not held up.
+    """Return the result of a future without blocking Ctrl-C.
 
     Raises:
-        TimeoutError: it is not there in time.
+        TimeoutError: it was not done in time.
     """
     if timeout_sec is not None:
         return future.result(timeout_sec)
@@ -278,12 +279,12 @@ def awaited(future: concurrent.futures.Future[Any], timeout_sec: float | None = 
 
 
 def level_of(name: str) -> LoggingSeverity:
-    """Return a level by its name."""
+    """Return a log level by its name."""
     return LoggingSeverity["WARN" if name.lower() == "warning" else name.upper()]
 
 
 class Live:
-    """The base of recorders and players."""
+    """The base class of recorders and players."""
 
     _kind: ClassVar[type[Any]]
 
@@ -311,7 +312,7 @@ class Live:
         """Start the thread of the node.
 
         Raises:
-            RuntimeError: it cannot begin.
+            RuntimeError: it cannot start.
         """
         if self._storage is None or self._options is None:
             raise RuntimeError(f"{type(self).__name__}: {NOT_CONFIGURED}")
@@ -320,7 +321,7 @@ class Live:
             self._thread.entity.node.get_logger().set_level(level_of(self._level))
 
     def stop_spin(self) -> None:
-        """End the thread of the node, and wait until all is written."""
+        """End the thread of the node, and wait until everything is written."""
         thread, self._thread = self._thread, None
         if thread is not None:
             thread.stop()
@@ -331,7 +332,7 @@ class Live:
         return self._thread
 
     def _call(self, work: Callable[[Any], Any]) -> Any:
-        """Return the result of `work` with the recorder or player, in the thread of its loop."""
+        """Return the result of `work`, called with the recorder or player in its loop's thread."""
         thread = self._live()
         return thread.call(lambda: work(thread.entity))
 
@@ -340,7 +341,7 @@ class Live:
         self._call(lambda entity: entity.pause())
 
     def resume(self) -> None:
-        """Go on."""
+        """Resume."""
         self._call(lambda entity: entity.resume())
 
     def is_paused(self) -> bool:
@@ -365,7 +366,7 @@ class Recorder(Live):
     def _make(self, context: Context) -> bag.Recorder:
         storage, options = self._storage, self._options
         if storage.storage_id not in {"", "mcap"}:
-            raise RuntimeError(f"aionode writes mcap, and not {storage.storage_id}")
+            raise RuntimeError(f"aionode writes mcap, not {storage.storage_id}")
         return bag.Recorder(
             storage.uri,
             selection=options.selection(),
@@ -396,7 +397,7 @@ class Recorder(Live):
         """Start recording; with options, as before Lyrical, record until `cancel` or Ctrl-C.
 
         Raises:
-            RuntimeError: the folder exists, cannot be made, or no options were given.
+            RuntimeError: the folder exists or cannot be created, or no options were given.
             KeyboardInterrupt: with options, after Ctrl-C, when the bag is closed.
         """
         if storage_options is None:
@@ -483,12 +484,12 @@ class Player(Live):
             self.stop_spin()
 
     def wait_for_playback_to_start(self, timeout: float = -1.0) -> bool:
-        """Whether it plays; there is nothing to wait for."""
+        """Return whether it plays; there is nothing to wait for."""
         del timeout
         return self._playing is not None
 
     def wait_for_playback_to_finish(self, timeout: float = -1.0) -> bool:
-        """Wait for the end, for some seconds at most, and return whether it has come.
+        """Wait for the end, for some seconds at most, and return whether it was reached.
 
         Raises:
             RuntimeError: a file is damaged.
@@ -519,7 +520,7 @@ class Player(Live):
         return bool(self._call(lambda player: player.play_next()))
 
     def burst(self, *given: Any) -> int:
-        """Publish so many of the next messages at once, while paused, and return how many.
+        """Publish several of the next messages at once, while paused, and return their number.
 
         Args:
             given: The number, 0 for all; before Lyrical, after the storage and play options.
@@ -535,7 +536,7 @@ class Player(Live):
         return count
 
     def seek(self, time_point: int) -> None:
-        """Go on at another time, in nanoseconds."""
+        """Seek to another time, in nanoseconds."""
         self._call(lambda player: player.seek(Time(nanoseconds=int(time_point))))
 
     def get_starting_time(self) -> int:
@@ -543,7 +544,7 @@ class Player(Live):
         return int(self._call(lambda player: player.start.nanoseconds))
 
     def get_playback_duration(self) -> int:
-        """Return how long the bags are, in nanoseconds."""
+        """Return the duration of the bags, in nanoseconds."""
         return int(self._call(lambda player: player.end.nanoseconds - player.start.nanoseconds))
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""Programs import these from `rosbag2_py`: bags and their metadata are written anew."""
+"""Programs import these from `rosbag2_py`: they rewrite bags and their metadata."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ __all__ = ["Reindexer", "bag_rewrite"]
 
 
 class Place(Protocol):
-    """The part of `StorageOptions` that is used: the place of a bag."""
+    """The parts of `StorageOptions` that are used: the place of a bag."""
 
     uri: str
 
 
 def bag_rewrite(input_options: Sequence[Place], output_config_file: str, /) -> None:
-    """Rewrite bags as one or several others.
+    """Rewrite bags into one or more others.
 
     Args:
         input_options: The bags.
         output_config_file: A YAML file with ``output_bags``, as ``ros2 bag convert -o`` takes it.
 
     Raises:
-        RuntimeError: a bag cannot be read, a new one exists or cannot be written, or the file asks
-            for something else than MCAP.
+        RuntimeError: a bag cannot be read, a new one exists or cannot be written, or the file
+            requests a format other than MCAP.
     """
     try:
         for uri, options in outputs_in(output_config_file):

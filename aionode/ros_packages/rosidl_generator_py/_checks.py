@@ -1,4 +1,4 @@
-"""rosidl's checks of assignments when ``check_fields`` is on, with its messages."""
+"""rosidl's checks of assignments when ``check_fields`` is on, with its error texts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rosidl_generator_py._field_types import TYPE_CODES, is_numeric, python_type
 __all__ = ["Check", "field_check", "refuse_unknown"]
 
 Check = Callable[[Any], bool]
-"""Checks a value; returns whether it is stored as it is, without the field's conversion."""
+"""Checks a value; returns whether it is stored unchanged, without the field's conversion."""
 
 CLASSES: Final = {"bool": bool, "bytes": bytes, "str": str, "float": float, "int": int}
 
@@ -111,7 +111,7 @@ def collection_check(name: str, type_: FieldType, class_: type[Any]) -> Check:
 
 
 def own_array_check(name: str, type_: FieldType) -> Check | None:
-    """Return the check of what is an `array.array` or `numpy.ndarray` already."""
+    """Return the check for a value that is already an `array.array` or `numpy.ndarray`."""
     if not is_numeric(type_):
         return None
     if type_.container == "array":
@@ -170,12 +170,12 @@ def limit_of(type_: FieldType, *, nested: bool = False) -> tuple[Callable[[Any],
 
 
 def repr_of_limit(kind: str) -> str:
-    """Return the largest float of a kind as rosidl writes it for a single value."""
+    """Return the largest float of a kind as rosidl writes it for single values."""
     return "3.402823466e+38" if kind == "float32" else "1.7976931348623157e+308"
 
 
 def refuse_unknown(known: Sequence[str], given: dict[str, Any]) -> None:
-    """Raise AssertionError for arguments of a constructor that are no fields."""
+    """Raise AssertionError for constructor arguments that are not fields."""
     unknown = sorted(name for name in given if f"_{name}" not in known)
     require(not unknown, f"Invalid arguments passed to constructor: {', '.join(unknown)}")
 

@@ -1,7 +1,7 @@
-"""Makes the Python classes that rosidl generates, when they are first asked for.
+"""Creates the Python classes that rosidl generates, on first use.
 
-Each is made from the description of the aionode class of the same ROS type. Its methods are
-compiled from a source that holds only field names, which aionode has validated, and numbers.
+Each is created from the description of the aionode class of the same ROS type. Its methods are
+compiled from source text that contains only numbers and field names, which aionode has validated.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ ACTION_PARTS: Final = ("Goal", "Result", "Feedback")
 ZEROS: Final = {"bool": "False", "byte": "b'\\0'", "string": "''", "wstring": "''"}
 
 CLASSES: dict[type[Any], type[Any]] = {}
-"""The class of rosidl's kind for each class of aionode."""
+"""The rosidl class for each aionode class."""
 
 SOURCES: dict[type[Any], type[Any]] = {}
-"""The class of aionode for each class of rosidl's kind."""
+"""The aionode class for each rosidl class."""
 
 MAKING = threading.RLock()
-"""Held while a class is made, so that there is one class for each type."""
+"""Held while a class is created, so that each type has only one."""
 
 
 def python_class(cls: type[Any]) -> type[Any]:
-    """Return the class of rosidl's kind for a message, service or action class of aionode."""
+    """Return the rosidl class for a message, service or action class of aionode."""
     own = CLASSES.get(cls)
     if own is None:
         with MAKING:
@@ -47,7 +47,7 @@ def python_class(cls: type[Any]) -> type[Any]:
 
 
 def aionode_class(cls: type[Any]) -> type[Any] | None:
-    """Return the aionode class of a class made here or of a subclass; None for other classes."""
+    """Return the aionode class of a class created here or its subclass; None for other classes."""
     return next((SOURCES[base] for base in cls.__mro__ if base in SOURCES), None)
 
 
@@ -67,7 +67,7 @@ def register(cls: type[Any]) -> type[Any]:
 
 
 class TypeSupport:
-    """Stands in for a C type support; rclpy only looks whether there is one."""
+    """Stands in for a C type support; rclpy only checks whether there is one."""
 
     def __init__(self, typename: str) -> None:
         self.typename = typename
@@ -88,7 +88,7 @@ TYPE_SUPPORTS: Final = (
 def metaclass_of(kind: str, name: str, module: str, cls: type[Any], body: dict[str, Any]) -> Any:
     """Return the metaclass of an interface.
 
-    rclpy asks it for the type support, and it holds constants and defaults, which are read-only.
+    rclpy asks it for the type support, and it contains constants and defaults, which are read-only.
     """
     names = TYPE_SUPPORTS if kind == "message" else TYPE_SUPPORTS[-1:]
     support = TypeSupport(type_name(cls))
@@ -108,7 +108,7 @@ def metaclass_of(kind: str, name: str, module: str, cls: type[Any], body: dict[s
 
 
 def read_only(name: str, doc: str, value: Callable[[], Any]) -> property:
-    """Return a property of a metaclass; its errors name it."""
+    """Return a property of a metaclass that is named in its errors."""
 
     def get(_: Any) -> Any:
         return value()
@@ -151,7 +151,7 @@ def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
         "TYPES": tuple(slot_type(field.type) for field in fields(cls)),
         "CHECKED": os.environ.get("ROS_PYTHON_CHECK_FIELDS", "") == "1",
     }
-    # The source holds validated field names and numbers only: see the module's docstring.
+    # The source contains only validated field names and numbers: see the module's docstring.
     exec(compile(source.text(), f"<{module}>", "exec"), namespace)  # noqa: S102
     message: type[Any] = namespace[name]
     return message
@@ -213,13 +213,13 @@ class ClassSource:
         return [*lines, *(f"      {name}" for name in self.constants), '    """']
 
     def initial(self, number: int, field: Field) -> str:
-        """Return the line of the constructor for a field."""
+        """Return the constructor's line for a field."""
         name, type_ = field.name, field.type
         given = f"kwargs[{name!r}]"
         if field.default is not None:
             initial = f"{self.name}.{name.upper()}__DEFAULT"
         elif is_numeric(type_) and type_.container != "array":
-            # As in rosidl, what is given is converted before it is checked.
+            # As in rosidl, given values are converted before they are checked.
             code = TYPE_CODES[type_.kind]
             return f"        self.{name} = ARRAY({code!r}, kwargs.get({name!r}, ()))"
         elif is_numeric(type_):

@@ -1,4 +1,4 @@
-"""Encodes and decodes messages of rosidl's kind, with the codec of aionode."""
+"""Encodes and decodes rosidl messages with aionode's codec."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ OCTETS: Final = [bytes((value,)) for value in range(256)]
 def encode(msg: Any) -> bytes:
     """Return a message encoded as ROS 2 does (CDR, little endian, with its header).
 
-    A message of aionode is accepted as well. What a field cannot hold is refused, also where ROS
-    sends something else instead; a bool field takes any object's truth if it is a number, and an
-    integer field takes a bool.
+    A message of aionode is accepted as well. Values that a field cannot hold are refused, even
+    where ROS sends something else instead; a bool field accepts any number by its truth value, and
+    an integer field accepts a bool.
 
     Raises:
         MessageError: A value does not fit its field; a `ValueError`.
@@ -49,7 +49,7 @@ def decode(cls: Any, data: Data) -> Any:
 
 @cache
 def decoder_of(cls: Any) -> Callable[[Data], Any]:
-    """Return the function that decodes messages of one class, as `decode` does.
+    """Return a function that decodes messages of one class, like `decode`.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -80,7 +80,7 @@ def described(cls: type[Any]) -> type[Message]:
 
 
 def from_aionode(msg: Message) -> Any:
-    """Return a message of aionode as one of rosidl's kind; they share no mutable data.
+    """Return an aionode message as a rosidl message; they share no mutable data.
 
     Raises:
         MessageError: A value does not fit its field.
@@ -89,7 +89,7 @@ def from_aionode(msg: Message) -> Any:
 
 
 def to_aionode(msg: Any) -> Message:
-    """Return a message of rosidl's kind as one of aionode, not validated.
+    """Return a rosidl message as an aionode message, without validation.
 
     Raises:
         AttributeError: A nested message has no attribute for one of its fields.
@@ -104,7 +104,7 @@ def adopted(msg: Any, cls: type[Message]) -> Message:
 
 
 def adopted_value(value: Any, field: Field) -> Any:
-    """Return the value of a field in a form that aionode accepts, if it can be accepted."""
+    """Return the value of a field in a form that aionode accepts, if possible."""
     type_ = field.type
     if type_.container == "single":
         return adopted_element(value, type_)
@@ -121,7 +121,7 @@ def adopted_value(value: Any, field: Field) -> Any:
 
 
 def adopted_element(value: Any, type_: FieldType) -> Any:
-    """Return one element in a form that aionode accepts, if it can be accepted."""
+    """Return one element in a form that aionode accepts, if possible."""
     if type_.nested is not None:
         return adopted(value, type_.nested)
     if type_.kind == "bool" and isinstance(value, int):
@@ -129,7 +129,7 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
     if isinstance(value, bool) and type_.kind in TYPE_CODES:
         return int(value)
     if type(value).__module__ == "numpy" and not hasattr(value, "__iter__"):
-        return value.item()  # a number, as Python's; an array is refused with aionode's error
+        return value.item()  # a Python number; an array is refused with aionode's error
     return value
 
 
@@ -137,7 +137,7 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
 def constructor(cls: type[Message]) -> Callable[..., Any]:
     """Return a function that creates a message from its fields, without the checks of ``__init__``.
 
-    Its source holds validated field names and numbers only.
+    Its source contains only validated field names and numbers.
     """
     own = python_class(cls)
     names = [field.name for field in fields(cls)]

@@ -1,4 +1,4 @@
-"""How rosidl names and stores the types of fields."""
+"""rosidl's names and storage of field types."""
 
 from __future__ import annotations
 
@@ -37,12 +37,14 @@ TYPE_CODES: Final = {
 }
 """Type codes of `array.array`, for the numbers whose sequences are such arrays in rosidl.
 
+Their arrays of fixed size are `numpy.ndarray`. Booleans and octets are stored in lists.
+
 Their arrays of fixed size are `numpy.ndarray`. Booleans and octets are in lists.
 """
 
 
 def is_numeric(type_: FieldType) -> bool:
-    """Return whether a field is an array or sequence of numbers, which is no list in rosidl."""
+    """Return whether a field is an array or sequence of numbers, not a list in rosidl."""
     return type_.container != "single" and type_.kind in TYPE_CODES
 
 
@@ -83,7 +85,7 @@ def field_text(type_: FieldType) -> str:
 
 
 def python_type(type_: FieldType) -> str:
-    """Return the name of the Python class of one element, as rosidl's errors have it."""
+    """Return the name of the Python class of one element, as in rosidl's errors."""
     if type_.nested is not None:
         return type_name(type_.nested).rpartition("/")[2]
     kinds = {"bool": "bool", "byte": "bytes", "string": "str", "wstring": "str"}

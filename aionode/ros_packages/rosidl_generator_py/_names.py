@@ -24,7 +24,7 @@ def interface_class(name: str) -> type[Any]:
     """Return the class of a type by its ROS name, such as ``std_msgs/msg/String``.
 
     Raises:
-        InterfaceNotFoundError: There is no such type; the error has names that are close.
+        InterfaceNotFoundError: There is no such type; the error suggests similar names.
         IdlError: Its definition is not valid.
     """
     return python_class(find(name))
@@ -46,7 +46,7 @@ def action_class(name: str) -> type[Any]:
 
 
 def of_kind(name: str, base: type[Any]) -> type[Any]:
-    """Return the class of a type that has to be of one kind."""
+    """Return the class of a type that must be of one kind."""
     described = find(name)
     if not issubclass(described, base):
         what = {Message: "a message", ServiceType: "a service", ActionType: "an action"}[base]
@@ -55,7 +55,7 @@ def of_kind(name: str, base: type[Any]) -> type[Any]:
 
 
 def aionode_class(cls: Any) -> Any:
-    """Return the aionode class of the same ROS type; one of aionode is returned as it is.
+    """Return the aionode class of the same ROS type; an aionode class is returned unchanged.
 
     Raises:
         TypeError: `cls` is not a message, service or action class.

@@ -1,1 +1,1 @@
-"""The package that programs import as `rosidl_parser`: the types of fields."""
+"""Programs import this as `rosidl_parser`: the types of fields."""

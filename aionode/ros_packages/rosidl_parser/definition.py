@@ -1,7 +1,7 @@
-"""The types of fields as rosidl describes them; programs know it as `rosidl_parser.definition`.
+"""The types of fields as described by rosidl; programs import it as `rosidl_parser.definition`.
 
-Only the types are here, with the attributes that programs read from ``SLOT_TYPES``. Definitions are
-parsed by `aionode.idl`.
+Only the types are here, with the attributes that programs read from ``SLOT_TYPES``. `aionode.idl`
+parses definitions.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class AbstractType:
 
 @dataclass(slots=True)
 class AbstractNestableType(AbstractType):
-    """A type that arrays and sequences may have as elements."""
+    """A type that may be the element type of arrays and sequences."""
 
 
 @dataclass(slots=True)
@@ -112,7 +112,7 @@ class BasicType(AbstractNestableType):
 
 @dataclass(slots=True)
 class NamedType(AbstractNestableType):
-    """A type that has a name, but is not looked up yet."""
+    """A type known by name, but not looked up yet."""
 
     name: str
 

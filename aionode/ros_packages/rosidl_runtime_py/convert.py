@@ -41,7 +41,7 @@ def message_to_ordereddict(
 
 
 def ordered(value: Any) -> Any:
-    """Return a value with an `OrderedDict` in the place of each dict."""
+    """Return a value with an `OrderedDict` in place of each dict."""
     if isinstance(value, dict):
         return OrderedDict((name, ordered(part)) for name, part in value.items())
     return list(map(ordered, value)) if isinstance(value, list) else value
@@ -72,7 +72,7 @@ def message_to_csv(
 ) -> str:
     """Return the values of a message in a line; see `message_to_ordereddict`."""
     form = Form(
-        as_float=lambda number: number,  # numpy's float32 has fewer digits than the float
+        as_float=lambda number: number,  # numpy's float32 prints fewer digits than float
         as_byte=lambda number: bytes((number,)),
         elements=list,
         truncate=truncate_length,

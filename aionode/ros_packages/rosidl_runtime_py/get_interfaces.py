@@ -1,4 +1,4 @@
-"""Lists the interfaces that can be used."""
+"""Lists the available interfaces."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = [
 
 
 def get_interface_packages() -> dict[str, str]:
-    """Return the packages with interfaces, and where they are; aionode's own are in aionode."""
+    """Return the packages with interfaces, and their folders; aionode's own are in aionode."""
     import aionode.interfaces
 
     own = dict.fromkeys(sorted(shipped_packages()), str(Path(aionode.interfaces.__file__).parent))
@@ -66,7 +66,7 @@ def interfaces(package_names: Collection[str], prefix: str) -> dict[str, list[st
 
 
 def installed(package: str) -> str:
-    """Return the prefix of an installed package, or nothing."""
+    """Return the prefix of an installed package, or None."""
     try:
         return has_resource("packages", package) or ""
     except OSError:

@@ -12,7 +12,7 @@ __all__ = ["import_message_from_namespaced_type"]
 
 
 def import_message_from_namespaced_type(message_type: Any) -> Any:
-    """Return the class of a type; of its elements, with a warning, if it is a sequence.
+    """Return the class of a type; for a sequence, of its elements, with a warning.
 
     Raises:
         ModuleNotFoundError: There is no such package.

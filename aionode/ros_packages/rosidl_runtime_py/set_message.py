@@ -27,7 +27,7 @@ def set_message_fields(
     expand_header_auto: bool = False,
     expand_time_now: bool = False,
 ) -> list[Callable[[Any], None]]:
-    """Set fields of a message, and return what sets those that stand for the current time.
+    """Set fields of a message, and return the setters for those that stand for the current time.
 
     Args:
         msg: The message.
@@ -46,12 +46,12 @@ def set_message_fields(
 
 @dataclass
 class Filling:
-    """Fills one message, and those in it."""
+    """Fills one message, and those nested in it."""
 
     expand_header_auto: bool
     expand_time_now: bool
     times: list[Callable[[Any], None]] = field(default_factory=list)
-    """Sets each field that stands for the current time."""
+    """Setters of the fields that stand for the current time."""
 
     def fill(self, msg: Any, values: Any) -> None:
         """Set fields of a message."""

@@ -46,7 +46,7 @@ def get_action(identifier: str) -> Any:
 def of_kind(
     type_: NamespacedType, is_kind: Callable[[Any], bool], what: str, identifier: str
 ) -> Any:
-    """Return the class of a type that has to be of one kind."""
+    """Return the class of a type that must be of one kind."""
     interface = import_message_from_namespaced_type(type_)
     if not is_kind(interface):
         raise ValueError(f"Expected the full name of {what}, got '{identifier}'")
@@ -54,27 +54,27 @@ def of_kind(
 
 
 def get_namespaced_type(identifier: str) -> NamespacedType:
-    """Return the type that a full name stands for."""
+    """Return the type with a full name."""
     return named(identifier, None)
 
 
 def get_message_namespaced_type(identifier: str) -> NamespacedType:
-    """Return the type that the name of a message stands for."""
+    """Return the type with the name of a message."""
     return named(identifier, "msg")
 
 
 def get_service_namespaced_type(identifier: str) -> NamespacedType:
-    """Return the type that the name of a service stands for."""
+    """Return the type with the name of a service."""
     return named(identifier, "srv")
 
 
 def get_action_namespaced_type(identifier: str) -> NamespacedType:
-    """Return the type that the name of an action stands for."""
+    """Return the type with the name of an action."""
     return named(identifier, "action")
 
 
 def named(identifier: str, kind: str | None) -> NamespacedType:
-    """Return the type that a name stands for; `kind` is added where it is left out."""
+    """Return the type with a name; `kind` is added if it is missing."""
     *namespaces, name = identifier.split("/")
     if len(namespaces) == 1 and kind is not None:
         namespaces.append(kind)
@@ -82,15 +82,15 @@ def named(identifier: str, kind: str | None) -> NamespacedType:
 
 
 def is_message(interface: Any) -> bool:
-    """Return whether a class is one of a message."""
+    """Return whether a class is a message class."""
     return hasattr(interface, "SLOT_TYPES")
 
 
 def is_service(interface: Any) -> bool:
-    """Return whether a class is one of a service."""
+    """Return whether a class is a service class."""
     return hasattr(interface, "Request") and hasattr(interface, "Response")
 
 
 def is_action(interface: Any) -> bool:
-    """Return whether a class is one of an action."""
+    """Return whether a class is an action class."""
     return all(hasattr(interface, part) for part in ("Goal", "Result", "Feedback"))

@@ -1,1 +1,1 @@
-"""The package that programs import as `sensor_msgs_py`: point clouds as numpy arrays."""
+"""Programs import this as `sensor_msgs_py`: point clouds as numpy arrays."""

@@ -1,4 +1,4 @@
-"""Point clouds as numpy arrays, as in `aionode.point_cloud2`, for messages of rosidl's kind."""
+"""Point clouds as numpy arrays, as in `aionode.point_cloud2`, for rosidl messages."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def read_points(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Return the points as a structured array, over the bytes of the message where possible.
+    """Return the points as a structured array, sharing the bytes of the message where possible.
 
     See `aionode.point_cloud2.read_points` for arguments and errors.
     """
@@ -44,7 +44,7 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Return points whose fields are all of one type as a plain array; see `read_points`."""
+    """Return points whose fields all have one type as a plain array; see `read_points`."""
     return point_cloud2.read_points_numpy(
         own(cloud), field_names, skip_nans, uvs, reshape_organized_cloud
     )
@@ -61,7 +61,7 @@ def read_points_list(
 
 
 def dtype_from_fields(fields: Iterable[Any], point_step: int | None = None) -> np.dtype[Any]:
-    """Return the type of one point as numpy has it."""
+    """Return numpy's type for one point."""
     return point_cloud2.dtype_from_fields(map(own, fields), point_step)
 
 
@@ -77,5 +77,5 @@ def create_cloud_xyz32(header: Any, points: Any, step: int | None = None) -> Any
 
 
 def own(message: Any) -> Any:
-    """Return a message as one of aionode; its bytes are not copied."""
+    """Return a message as an aionode message; its bytes are not copied."""
     return to_aionode(message)

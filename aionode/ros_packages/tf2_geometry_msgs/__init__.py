@@ -1,4 +1,4 @@
-"""The package that programs import as `tf2_geometry_msgs`: stamped messages in another frame."""
+"""Programs import this as `tf2_geometry_msgs`: stamped messages in another frame."""
 
 from __future__ import annotations
 

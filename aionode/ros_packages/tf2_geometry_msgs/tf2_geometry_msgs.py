@@ -47,12 +47,12 @@ STAMPED = (
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return a message as it is."""
+    """Return a message unchanged."""
     return msg
 
 
 def from_msg_msg(msg: Any) -> Any:
-    """Return a message as it is."""
+    """Return a message unchanged."""
     return msg
 
 
@@ -68,14 +68,14 @@ do_transform_polygon_stamped = do_transform_wrench_stamped = transformed
 
 
 def do_transform_pose(pose: Any, transform: Any) -> Any:
-    """Return a pose without a header, moved and turned."""
+    """Return a pose without a header, translated and rotated."""
     inner: Any = to_aionode(pose)
     by: Any = to_aionode(transform)
     return from_aionode(do_transform(geometry.PoseStamped(pose=inner), by).pose)
 
 
 def transform_covariance(cov_in: Any, transform: Any) -> Any:
-    """Return a covariance of 36 numbers, turned."""
+    """Return a covariance of 36 numbers, rotated."""
     stamped = geometry.PoseWithCovarianceStamped()
     stamped.pose.covariance = list(cov_in)
     by: Any = to_aionode(transform)

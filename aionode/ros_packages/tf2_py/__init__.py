@@ -1,4 +1,4 @@
-"""The package that programs import as `tf2_py`: the core of transforms, and its exceptions."""
+"""Programs import this as `tf2_py`: the core of transforms, and its exceptions."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ CallableT = TypeVar("CallableT", bound=Callable[..., Any])
 
 
 def locked(method: CallableT) -> CallableT:
-    """Return a method that threads call one after the other, with tf2_py's six exceptions."""
+    """Return a method that threads call one at a time, with tf2_py's six exceptions."""
 
     @wraps(method)
     def call(self: BufferCore, *args: Any, **options: Any) -> Any:
@@ -61,7 +61,7 @@ class BufferCore(tf.BufferCore):
         self._BufferCore__lock = threading.RLock()
 
     def _BufferCore__message(self, *parts: Any) -> Any:
-        """Return a transform as a message of rosidl's kind."""
+        """Return a transform as a rosidl message."""
         return from_aionode(super()._BufferCore__message(*parts))
 
     @locked

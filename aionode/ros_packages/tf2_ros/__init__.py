@@ -1,4 +1,4 @@
-"""The package that programs import as `tf2_ros`: buffers, listeners, broadcasters and clients."""
+"""Programs import this as `tf2_ros`: buffers, listeners, broadcasters and clients."""
 
 from __future__ import annotations
 

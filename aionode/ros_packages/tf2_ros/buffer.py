@@ -1,4 +1,4 @@
-"""A buffer of transforms for programs of rclpy, which several threads use."""
+"""A buffer of transforms for rclpy programs, which several threads may use."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Buffer(BufferCore, BufferInterface):
     """Keeps transforms; with a node, it offers the service ``tf2_frames``.
 
     A wait with a time limit blocks its thread, as in tf2_ros, but ends as soon as the transform is
-    there. Futures are looked at again only when a frame of their chain has what they need.
+    available. Futures are checked again only when a frame of their chain has the data they need.
 
     Args:
         cache_time: How long transforms are kept; 10 s by default.
@@ -74,7 +74,7 @@ class Buffer(BufferCore, BufferInterface):
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NOW
     ) -> Any:
-        """Return the transform between two frames, after waiting for at most `timeout`."""
+        """Return the transform between two frames, waiting for at most `timeout`."""
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -87,7 +87,7 @@ class Buffer(BufferCore, BufferInterface):
         fixed_frame: str,
         timeout: Duration = NOW,
     ) -> Any:
-        """Return the transform between two times, after waiting for at most `timeout`."""
+        """Return the transform between two times, waiting for at most `timeout`."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
         self.can_transform_full(*question, timeout)
         return self.lookup_transform_full_core(*question)
@@ -100,7 +100,7 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Duration = NOW,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a transform is available, after waiting for at most `timeout`."""
+        """Return whether a transform is available, waiting for at most `timeout`."""
         answer = self._BufferCore__until(
             lambda: self.can_transform_core(target_frame, source_frame, time), timeout
         )
@@ -116,7 +116,7 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Duration = NOW,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a transform between two times is available, after a wait."""
+        """Return whether a transform between two times is available, waiting if needed."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
         answer = self._BufferCore__until(lambda: self.can_transform_full_core(*question), timeout)
         return answer if return_debug_tuple else answer[0]
@@ -124,7 +124,7 @@ class Buffer(BufferCore, BufferInterface):
     def _BufferCore__until(
         self, ask: Callable[[], tuple[bool, str]], timeout: Any
     ) -> tuple[bool, str]:
-        """Ask until the answer is yes, or the time is over."""
+        """Check until the answer is yes, or the time limit has passed."""
         ends_ns = perf_ns() + time_ns_of(timeout)
         with self._BufferCore__new_data:
             while not (answer := ask())[0] and (left_ns := ends_ns - perf_ns()) > 0:
@@ -151,7 +151,7 @@ class Buffer(BufferCore, BufferInterface):
     def wait_for_transform_async(
         self, target_frame: str, source_frame: str, time: Any
     ) -> Future[Any]:
-        """Return a future of a transform."""
+        """Return a future for a transform."""
         return self._BufferCore__future(
             ((target_frame, source_frame, time_ns_of(time)),),
             lambda: self.lookup_transform_core(target_frame, source_frame, time),
@@ -165,7 +165,7 @@ class Buffer(BufferCore, BufferInterface):
         source_time: Any,
         fixed_frame: str,
     ) -> Future[Any]:
-        """Return a future of a transform between two times."""
+        """Return a future for a transform between two times."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
         return self._BufferCore__future(
             (

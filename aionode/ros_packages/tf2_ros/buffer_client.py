@@ -1,4 +1,4 @@
-"""Asking a server for transforms, in a thread that may block."""
+"""Requests transforms from a server, in a thread that may block."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ HANGS = "Something is likely wrong with the server."
 
 
 class BufferClient(BufferInterface):
-    """Asks a server for transforms; another thread has to spin its node.
+    """Requests transforms from a server; another thread has to spin its node.
 
     Args:
         node: The node that asks.
         ns: The name of the server's action.
-        check_frequency: Not used: the client waits for the answer, and does not look for it.
+        check_frequency: Not used: the client waits for the answer without polling.
         timeout_padding: How much longer than the server to wait.
     """
 
@@ -131,7 +131,7 @@ class BufferClient(BufferInterface):
 
 
 def outcome(future: Any, limit_s: float, text: str) -> Any:
-    """Wait for a future in this thread, and return its result; TimeoutException after the limit."""
+    """Block until a future is done, and return its result; TimeoutException after the limit."""
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
     if not done.wait(limit_s):

@@ -84,27 +84,27 @@ class ConvertRegistration:
         ConvertRegistration.__convert_map[key] = callback
 
     def get_from_msg(self, key: Any) -> Callable[[Any], Any]:
-        """Return the function that converts a message; TypeException if there is none."""
+        """Return the function that converts a message; raise TypeException if there is none."""
         return entry_of(ConvertRegistration.__from_msg_map, key)
 
     def get_to_msg(self, key: Any) -> Callable[[Any], Any]:
-        """Return the function that converts to a message; TypeException if there is none."""
+        """Return the function that converts to a message; raise TypeException if there is none."""
         return entry_of(ConvertRegistration.__to_msg_map, key)
 
     def get_convert(self, key: Any) -> Callable[[Any], Any]:
-        """Return what converts between two types; TypeException if nothing does."""
+        """Return the function that converts between two types; TypeException if there is none."""
         return entry_of(ConvertRegistration.__convert_map, key)
 
 
 def entry_of(table: dict[Any, Callable[..., Any]], key: Any) -> Callable[..., Any]:
-    """Return an entry of a table; TypeException if it has none."""
+    """Return an entry of a table; raise TypeException if there is none."""
     if key not in table:
         raise TypeException(f"Type {key} is not loaded or supported")
     return table[key]
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """Return an object as one of another type."""
+    """Convert an object to another type."""
     registration = ConvertRegistration()
     try:
         direct = registration.get_convert((type(a), b_type))
@@ -122,7 +122,7 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:  # tf2's name
 
 
 class BufferInterface:
-    """Looks transforms up, in the place that a subclass knows."""
+    """Looks transforms up, in a place defined by the subclass."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()

@@ -1,4 +1,4 @@
-"""Publishing transforms that never change."""
+"""Publishes transforms that never change."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ __all__ = ["StaticTransformBroadcaster"]
 
 
 class StaticTransformBroadcaster(tf.StaticTransformBroadcaster):
-    """Publishes transforms on /tf_static, with a node of rclpy: all that were sent, each time.
+    """Publishes transforms on /tf_static, with an rclpy node: all transforms so far, each time.
 
-    A transform of the same child frame replaces the one before; tf2_ros's Python keeps the first,
+    A transform of the same child frame replaces the earlier one; tf2_ros's Python keeps the first,
     its C++ the last.
     """
 

@@ -1,4 +1,4 @@
-"""Publishing transforms that change."""
+"""Publishes transforms that change."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ __all__ = ["TransformBroadcaster"]
 
 
 class TransformBroadcaster(tf.TransformBroadcaster):
-    """Publishes transforms on /tf, with a node of rclpy."""
+    """Publishes transforms on /tf, with an rclpy node."""
 
     _TransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")

@@ -1,4 +1,4 @@
-"""Subscriptions of /tf and /tf_static that feed a buffer."""
+"""Subscriptions to /tf and /tf_static that fill a buffer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Puts the transforms of /tf and /tf_static into a buffer.
+    """Adds the transforms of /tf and /tf_static to a buffer.
 
     Args:
         buffer: The buffer that receives the transforms.
@@ -54,7 +54,7 @@ class TransformListener:
             )
         self.buffer = buffer
         self.node = node
-        # Otherwise a callback that waits for a transform would keep it from arriving.
+        # Otherwise a callback that waits for a transform would prevent its arrival.
         self.group = ReentrantCallbackGroup()
         msg_type = message_class("tf2_msgs/msg/TFMessage")
         self.tf_sub = node.create_subscription(
@@ -87,11 +87,11 @@ class TransformListener:
         self.node.destroy_subscription(self.tf_static_sub)
 
     def callback(self, data: Any) -> None:
-        """Take transforms that may change."""
+        """Add transforms that may change."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Take transforms that hold at any time."""
+        """Add transforms that are valid at any time."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, AUTHORITY)

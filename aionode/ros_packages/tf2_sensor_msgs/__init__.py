@@ -1,4 +1,4 @@
-"""The package that programs import as `tf2_sensor_msgs`: point clouds in another frame."""
+"""Programs import this as `tf2_sensor_msgs`: point clouds in another frame."""
 
 from __future__ import annotations
 

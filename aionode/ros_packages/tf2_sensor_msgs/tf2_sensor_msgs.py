@@ -16,14 +16,14 @@ __all__ = ["do_transform_cloud", "from_msg_msg", "to_msg_msg", "transform_points
 
 
 def transform_points(point_cloud: Any, transform: Any) -> Any:
-    """Return points, an array of three columns, moved and turned by a Transform."""
+    """Translate and rotate points, an array of three columns, by a Transform."""
     moved = transform.translation
     turned = point_cloud @ np.array(rotation_matrix(transform.rotation)).T
     return turned + np.array([moved.x, moved.y, moved.z])
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """Return a cloud, moved and turned by a Transform or TransformStamped."""
+    """Translate and rotate a cloud by a Transform or TransformStamped."""
     own: Any = to_aionode(cloud)
     by: Any = to_aionode(transform)
     if not isinstance(by, TransformStamped):

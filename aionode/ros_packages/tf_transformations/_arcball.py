@@ -1,4 +1,4 @@
-"""A ball under the mouse that turns what is shown."""
+"""A virtual trackball: dragging with the mouse rotates the view."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ __all__ = [
 
 
 class Arcball:
-    """A turn that is changed by dragging points of a ball.
+    """A rotation that is changed by dragging points of a ball.
 
     Args:
-        initial: The turn at the beginning, as quaternion or 4x4 matrix.
+        initial: The initial rotation, as a quaternion or 4x4 matrix.
 
     Raises:
         ValueError: `initial` is neither.
@@ -45,7 +45,9 @@ class Arcball:
         if values.shape == (4, 4):
             values = floats(quaternion_from_matrix(values))
         elif values.shape != (4,):
-            raise ValueError(f"initial has the shape {values.shape}; a quaternion or 4x4 fits")
+            raise ValueError(
+                f"initial has the shape {values.shape}; use a quaternion or a 4x4 matrix"
+            )
         self._now: Array = unit_vector(values)
         self._before = self._at_down = self._now
         self._down = np.array([0.0, 0.0, 1.0])
@@ -56,24 +58,24 @@ class Arcball:
         self._constrains = False
 
     def place(self, center: Sequence[float], radius: float) -> None:
-        """Set the middle and radius of the ball, in the coordinates of the window."""
+        """Set the centre and radius of the ball, in window coordinates."""
         self._center = (center[0], center[1])
         self._radius = float(radius)
 
     def setaxes(self, *axes: npt.ArrayLike) -> None:
-        """Set the axes of which one is kept to while `setconstrain` is in force."""
+        """Set the axes to which rotations are constrained while `setconstrain` is on."""
         self._axes = [unit_vector(axis) for axis in axes]
 
     def setconstrain(self, constrain: bool) -> None:
-        """Set whether turns are about one of the axes only."""
+        """Set whether rotations are constrained to the axes."""
         self._constrains = constrain is True
 
     def getconstrain(self) -> bool:
-        """Return whether turns are about one of the axes only."""
+        """Return whether rotations are constrained to the axes."""
         return self._constrains
 
     def down(self, point: Sequence[float]) -> None:
-        """Begin to drag at a point of the window."""
+        """Start dragging at a point of the window."""
         self._down = arcball_map_to_sphere(point, self._center, self._radius)
         self._at_down = self._before = self._now
         self._axis = None
@@ -83,7 +85,7 @@ class Arcball:
             self._down = arcball_constrain_to_axis(self._down, self._axis)
 
     def drag(self, point: Sequence[float]) -> None:
-        """Turn to a point of the window."""
+        """Rotate to a point of the window."""
         here = arcball_map_to_sphere(point, self._center, self._radius)
         if self._axis is not None:
             here = arcball_constrain_to_axis(here, self._axis)
@@ -96,12 +98,12 @@ class Arcball:
             self._now = floats(quaternion_multiply(whole, self._at_down))
 
     def next(self, acceleration: float = 0.0) -> None:
-        """Turn on in the direction of the last drag."""
+        """Continue to rotate in the direction of the last drag."""
         turned = quaternion_slerp(self._before, self._now, 2.0 + acceleration, spin=0)
         self._before, self._now = self._now, turned
 
     def matrix(self) -> Array:
-        """Return the turn as 4x4 matrix."""
+        """Return the rotation as a 4x4 matrix."""
         return quaternion_matrix(self._now)
 
 
@@ -115,7 +117,7 @@ def arcball_map_to_sphere(point: Sequence[float], center: Sequence[float], radiu
 
 
 def arcball_constrain_to_axis(point: npt.ArrayLike, axis: npt.ArrayLike) -> Array:
-    """Return the point of the ball, on the circle about an axis, that is nearest to a point."""
+    """Return the point nearest to a given one on the ball's circle about an axis."""
     here, about = floats(point), floats(axis)
     on_plane: Array = here - about * np.dot(about, here)
     length = vector_norm(on_plane)

@@ -23,11 +23,11 @@ __all__ = [
 Array = npt.NDArray[Any]
 
 EPSILON = 4.0 * float(np.finfo(float).eps)
-"""Below it, a number is taken for zero."""
+"""Numbers below this are treated as zero."""
 
 
 def floats(data: npt.ArrayLike, size: int | None = None) -> Array:
-    """Return a new array of numbers, of the first `size` if that is given."""
+    """Return a new array of floats; of the first `size` if that is given."""
     return np.array(data, dtype=np.float64)[:size]
 
 
@@ -37,7 +37,7 @@ def vector_norm(data: npt.ArrayLike, axis: int | None = None, out: Array | None 
     Args:
         data: A vector, or an array of vectors.
         axis: The axis of their components; all by default.
-        out: Takes the lengths; then nothing is returned.
+        out: Receives the lengths; then nothing is returned.
     """
     values = floats(data)
     if out is not None:
@@ -49,12 +49,12 @@ def vector_norm(data: npt.ArrayLike, axis: int | None = None, out: Array | None 
 
 
 def unit_vector(data: npt.ArrayLike, axis: int | None = None, out: Array | None = None) -> Any:
-    """Return a vector of length 1 in the same direction, or vectors along an axis.
+    """Return a vector of length 1 in the same direction, or such vectors along an axis.
 
     Args:
         data: A vector, or an array of vectors.
         axis: The axis of their components; all by default.
-        out: Takes the vectors, and may be `data`; then nothing is returned.
+        out: Receives the vectors, and may be `data`; then nothing is returned.
     """
     values = floats(data)
     lengths = np.sqrt(np.sum(values * values, axis=axis, keepdims=axis is not None))
@@ -65,7 +65,7 @@ def unit_vector(data: npt.ArrayLike, axis: int | None = None, out: Array | None 
 
 
 def random_vector(size: int | tuple[int, ...]) -> Array:
-    """Return random numbers from 0 up to, and without, 1."""
+    """Return random numbers from 0 up to, but excluding, 1."""
     return np.random.random(size)  # noqa: NPY002  # programs seed this generator
 
 
@@ -87,6 +87,6 @@ def concatenate_matrices(*matrices: npt.ArrayLike) -> Array:
 
 
 def is_same_transform(matrix0: npt.ArrayLike, matrix1: npt.ArrayLike) -> bool:
-    """Return whether two 4x4 matrices do the same to every point, whatever their scale."""
+    """Return whether two 4x4 matrices have the same effect on every point, whatever their scale."""
     first, second = floats(matrix0), floats(matrix1)
     return bool(np.allclose(first / first[3, 3], second / second[3, 3]))

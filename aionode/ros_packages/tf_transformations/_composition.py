@@ -1,4 +1,4 @@
-"""Matrices of several transformations: taken apart, put together, and found from points."""
+"""Matrices of several transformations: decomposed, composed, and estimated from points."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ __all__ = [
 
 
 def decompose_matrix(matrix: npt.ArrayLike) -> tuple[Array, Array, Angles, Array, None]:
-    """Return scales, shears, Euler angles and translation that make a 4x4 matrix.
+    """Decompose a 4x4 matrix into scales, shears, Euler angles and translation.
 
-    The scales are those of x, y and z, the shears x-y, x-z and y-z, the angles are in radians about
-    the static axes x, y and z. The fifth value, of a perspective, is always None.
+    The scales are those of x, y and z, the shears x-y, x-z and y-z, the angles in radians about the
+    static axes x, y and z. The fifth value, for a perspective, is always None.
 
     Raises:
         ValueError: The matrix has no inverse.
@@ -48,14 +48,14 @@ def compose_matrix(
     translate: npt.ArrayLike | None = None,
     perspective: npt.ArrayLike | None = None,
 ) -> Array:
-    """Return the matrix of what `decompose_matrix` returns.
+    """Compose a matrix from the results of `decompose_matrix`.
 
     Args:
         scale: The scales of x, y and z.
         shear: The shears x-y, x-z and y-z.
         angles: Euler angles about the static axes x, y and z, in radians.
         translate: The translation.
-        perspective: Is ignored.
+        perspective: Ignored.
     """
     upper = np.identity(3)
     if shear is not None:
@@ -87,16 +87,17 @@ def orthogonalization_matrix(lengths: npt.ArrayLike, angles: npt.ArrayLike) -> A
 def superimposition_matrix(
     v0: npt.ArrayLike, v1: npt.ArrayLike, scaling: bool = False, usesvd: bool = True
 ) -> Array:
-    """Return the matrix that takes points nearest to others: a turn, a translation, and a scale.
+    """Return the matrix that maps points closest to others: a rotation, translation, and scale.
 
     Args:
         v0: Three or more points, as columns of 3 or 4 components.
-        v1: As many points to which they are taken.
+        v1: As many target points.
         scaling: Scale as well.
-        usesvd: Find the turn by singular values, else by the quaternion of the best turn.
+        usesvd: Find the rotation by singular values, otherwise by the quaternion of the best
+            rotation.
 
     Raises:
-        ValueError: The points are not of the same form, or are fewer than three.
+        ValueError: The arrays have different shapes, or fewer than three points.
     """
     start, end = floats(v0, 3), floats(v1, 3)
     if start.shape != end.shape or start.shape[1] < 3:
@@ -122,7 +123,7 @@ def best_turn(covariance: Array) -> Array:
 
 
 def best_quaternion_turn(covariance: Array) -> Array:
-    """Return the same as the rotation of a quaternion: the main axis of a form in it (Horn)."""
+    """Return the same from the quaternion that is the main axis of a quadratic form (Horn)."""
     trace = float(np.trace(covariance))
     form = np.empty((4, 4))
     form[:3, :3] = covariance + covariance.T - trace * np.identity(3)

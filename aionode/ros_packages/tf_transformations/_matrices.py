@@ -33,13 +33,13 @@ __all__ = [
 ]
 
 CLOSE = 1e-8
-"""How near numbers are that are taken for equal, such as an eigenvalue and 1."""
+"""Tolerance within which numbers are treated as equal, such as an eigenvalue and 1."""
 
 Projection = tuple[Array, Array, Array | None, Array | None, bool]
 
 
 def identity_matrix() -> Array:
-    """Return the 4x4 matrix that changes nothing."""
+    """Return the 4x4 identity matrix."""
     return np.identity(4)
 
 
@@ -54,7 +54,7 @@ def translation_from_matrix(matrix: npt.ArrayLike) -> Array:
 
 
 def fixed_point(matrix: Array) -> Array:
-    """Return the point nearest to the origin that an affine matrix leaves where it is.
+    """Return the fixed point of an affine matrix nearest to the origin.
 
     Raises:
         ValueError: It moves every point.
@@ -70,23 +70,23 @@ def fixed_point(matrix: Array) -> Array:
 
 
 def reflection_matrix(point: npt.ArrayLike, normal: npt.ArrayLike) -> Array:
-    """Return the matrix of a mirror, given by a point on it and its normal."""
+    """Return the matrix of a reflection, given by a point on its plane and the normal."""
     axis: Array = unit_vector(floats(normal, 3))
     mirror = np.identity(3) - 2.0 * np.outer(axis, axis)
     return homogeneous(mirror, 2.0 * np.dot(floats(point, 3), axis) * axis)
 
 
 def reflection_from_matrix(matrix: npt.ArrayLike) -> tuple[Array, Array]:
-    """Return a point on a mirror, and its normal.
+    """Return a point on the plane of a reflection, and the normal.
 
     Raises:
-        ValueError: The matrix is no reflection.
+        ValueError: The matrix is not a reflection.
     """
     values = floats(matrix)
     mirror = values[:3, :3]
     twice = np.identity(3) - mirror  # 2 n nᵀ
     if not np.allclose(mirror @ mirror, np.identity(3)) or abs(np.trace(twice) - 2.0) > CLOSE:
-        raise ValueError("the matrix is no reflection: it has to mirror one axis, and no other")
+        raise ValueError("the matrix is not a reflection: it has to mirror exactly one axis")
     normal: Array = unit_vector(twice[:, np.argmax(np.diag(twice))])
     return fixed_point(values), normal
 
@@ -94,7 +94,7 @@ def reflection_from_matrix(matrix: npt.ArrayLike) -> tuple[Array, Array]:
 def rotation_matrix(
     angle: float, direction: npt.ArrayLike, point: npt.ArrayLike | None = None
 ) -> Array:
-    """Return the matrix of a turn.
+    """Return the matrix of a rotation.
 
     Args:
         angle: In radians.
@@ -109,18 +109,18 @@ def rotation_matrix(
 
 
 def rotation_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array]:
-    """Return the angle of a turn in radians, the direction of its axis, and a point on that.
+    """Return the angle of a rotation in radians, the direction of its axis, and a point on it.
 
     The point has four components, of which the last is 1.
 
     Raises:
-        ValueError: The matrix is no rotation, or moves every point.
+        ValueError: The matrix is not a rotation, or moves every point.
     """
     values = floats(matrix)
     rotation = values[:3, :3]
     lengths, axes = np.linalg.eigh((rotation + rotation.T) / 2)
     if abs(lengths[-1] - 1.0) > 1e-5:
-        raise ValueError("the matrix is no rotation: it has no axis")
+        raise ValueError("the matrix is not a rotation: it has no axis")
     direction: Array = axes[:, -1]
     angle = math.atan2(
         float(np.dot(direction, antisymmetric(rotation))), float(np.trace(rotation)) - 1.0
@@ -134,12 +134,12 @@ def rotation_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array]:
 def scale_matrix(
     factor: float, origin: npt.ArrayLike | None = None, direction: npt.ArrayLike | None = None
 ) -> Array:
-    """Return the matrix that scales by a factor; -1 mirrors each point at the origin.
+    """Return the matrix that scales by a factor; -1 reflects each point at the origin.
 
     Args:
         factor: The factor.
-        origin: The point that stays where it is.
-        direction: The only direction that is scaled; all are by default.
+        origin: The point that stays fixed.
+        direction: The only direction to scale; by default all are scaled.
     """
     if direction is None:
         grown = np.identity(3) * (factor - 1.0)
@@ -168,11 +168,11 @@ def scale_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array | None
 def shear_matrix(
     angle: float, direction: npt.ArrayLike, point: npt.ArrayLike, normal: npt.ArrayLike
 ) -> Array:
-    """Return the matrix of a shear: points move in a direction, by their distance from a plane.
+    """Return the matrix of a shear: points move in proportion to their distance from a plane.
 
     Args:
-        angle: Its tangent is the way of a point at distance 1; in radians.
-        direction: The direction of the way, in the plane.
+        angle: The angle in radians, whose tangent is the displacement at distance 1.
+        direction: The direction of the displacement, in the plane.
         point: A point on the plane.
         normal: The normal of the plane.
     """
@@ -182,7 +182,7 @@ def shear_matrix(
 
 
 def shear_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array, Array]:
-    """Return the angle of a shear in radians, its direction, a point and the normal of its plane.
+    """Return the angle of a shear in radians, its direction, a point of its plane, and the normal.
 
     Raises:
         ValueError: The matrix moves every point.
@@ -202,14 +202,14 @@ def projection_matrix(
     perspective: npt.ArrayLike | None = None,
     pseudo: bool = False,
 ) -> Array:
-    """Return the matrix of a projection onto a plane, along its normal unless said otherwise.
+    """Return the matrix of a projection onto a plane, by default along its normal.
 
     Args:
         point: A point on the plane.
         normal: The normal of the plane.
         direction: The direction of a parallel projection.
-        perspective: The point to which the lines of a perspective run.
-        pseudo: Keep the depth that a perspective takes away.
+        perspective: The centre of a perspective projection.
+        pseudo: Keep the depth that a perspective projection would remove.
     """
     on_plane, axis = floats(point, 3), unit_vector(floats(normal, 3))
     distance = float(np.dot(on_plane, axis))
@@ -228,14 +228,14 @@ def projection_matrix(
 
 
 def projection_from_matrix(matrix: npt.ArrayLike, pseudo: bool = False) -> Projection:
-    """Return the arguments for `projection_matrix` that make a matrix.
+    """Return the arguments of `projection_matrix` for a matrix.
 
     Args:
         matrix: The matrix of a projection.
-        pseudo: Whether a perspective keeps the depth, which a matrix does not tell.
+        pseudo: Whether a perspective keeps the depth, which cannot be seen from the matrix.
 
     Raises:
-        ValueError: The matrix is no projection.
+        ValueError: The matrix is not a projection.
     """
     values = floats(matrix)
     length = float(np.linalg.norm(values[3, :3]))
@@ -244,7 +244,7 @@ def projection_from_matrix(matrix: npt.ArrayLike, pseudo: bool = False) -> Proje
     values = values / values[3, 3]
     left, lengths, right = np.linalg.svd(values[:3, :3])
     if lengths[-1] > CLOSE:
-        raise ValueError("the matrix is no projection: no direction is taken away")
+        raise ValueError("the matrix is not a projection: it removes no direction")
     point, direction, normal = np.append(fixed_point(values), 1.0), right[-1], left[:, -1]
     if abs(abs(np.dot(direction, normal)) - 1.0) < CLOSE:
         return point, normal, None, None, False
@@ -252,9 +252,9 @@ def projection_from_matrix(matrix: npt.ArrayLike, pseudo: bool = False) -> Proje
 
 
 def of_perspective(values: Array, *, pseudo: bool) -> tuple[Array, Array, None, Array]:
-    """Return a point and the normal of the plane, no direction, and the point of perspective."""
+    """Return a point and normal of the plane, no direction, and the centre of the perspective."""
     normal = -values[3, :3]
-    # The plane's points are scaled by the distance of the perspective's point from the plane.
+    # Points of the plane are scaled by the distance of the perspective's centre from the plane.
     scale = (float(np.trace(values)) + float(pseudo)) / 3.0
     target = (scale * np.identity(3) - values[:3, :3]) @ normal
     point = (values[3, 3] - scale) * normal
@@ -270,29 +270,31 @@ def clip_matrix(
     far: float,
     perspective: bool = False,
 ) -> Array:
-    """Return the matrix that takes a box, or a truncated pyramid, to coordinates from -1 to 1.
+    """Return the matrix that maps a box, or a truncated pyramid, to coordinates from -1 to 1.
 
     Args:
-        left: Where x begins; of a pyramid, at its near end.
-        right: Where x ends.
-        bottom: Where y begins.
-        top: Where y ends.
-        near: Where z begins.
-        far: Where z ends.
-        perspective: A pyramid with its point at the origin, along z; divide by the fourth
-            component of what the matrix gives.
+        left: The smallest x; of a pyramid, at its near end.
+        right: The largest x.
+        bottom: The smallest y.
+        top: The largest y.
+        near: The smallest z.
+        far: The largest z.
+        perspective: A pyramid with its apex at the origin, along z; divide results by their fourth
+            component.
 
     Raises:
-        ValueError: A side ends before it begins, or a pyramid begins at its point.
+        ValueError: A side ends before it begins, or a pyramid begins at its apex.
     """
     low, high = np.array([left, bottom, near], float), np.array([right, top, far], float)
     if np.any(low >= high):
-        raise ValueError("the box ends before it begins; left < right, bottom < top and near < far")
+        raise ValueError(
+            "the box ends before it begins; use left < right, bottom < top and near < far"
+        )
     size, middle = high - low, high + low
     if not perspective:
         return homogeneous(np.diag(2.0 / size), -middle / size)
     if near <= EPSILON:
-        raise ValueError(f"near={near}; it has to be above 0 for a perspective")
+        raise ValueError(f"near is {near}; it has to be above 0 for a perspective")
     matrix = np.diag([-2.0 * near / size[0], -2.0 * near / size[1], -middle[2] / size[2], 0.0])
     matrix[:2, 2] = middle[:2] / size[:2]
     matrix[2, 3] = 2.0 * near * far / size[2]

@@ -1,4 +1,4 @@
-"""Quaternions (x, y, z, w), Euler angles and rotation matrices, each from the others."""
+"""Conversions between quaternions (x, y, z, w), Euler angles and rotation matrices."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ Axes = str | tuple[int, int, int, int]
 
 
 def sequences() -> dict[str, tuple[int, int, int, int]]:
-    """Return the code of each sequence of axes: its first axis, parity, repetition and frame.
+    """Return the code of each axis sequence: its first axis, parity, repetition and frame.
 
-    ``sxyz`` turns about the static axes x, y and z; ``rzyx`` about those that turn along, which is
-    the same sequence backwards.
+    ``sxyz`` rotates about the static axes x, y and z; ``rzyx`` about axes that rotate along, which
+    is the same sequence backwards.
     """
     codes = {}
     orders = [*permutations("xyz"), *((a, b, a) for a, b in product("xyz", repeat=2) if a != b)]
@@ -58,7 +58,7 @@ TUPLE_TO_AXES: Final = {code: axes for axes, code in AXES_TO_TUPLE.items()}
 
 
 def static_sequence(axes: Axes) -> tuple[int, int, int, bool]:
-    """Return the axes of a sequence in the order of static axes, and whether that is backwards.
+    """Return the axes of a sequence in the order of static axes, and whether it is reversed.
 
     Raises:
         KeyError: There is no such sequence.
@@ -89,7 +89,7 @@ def euler_matrix(ai: float, aj: float, ak: float, axes: Axes = "sxyz") -> Array:
         ai: The angle about the first axis, in radians.
         aj: The angle about the second.
         ak: The angle about the third.
-        axes: ``s`` for static axes or ``r`` for those that turn along, and three axes; or the four
+        axes: ``s`` for static or ``r`` for rotating axes, followed by three axes; or the four
             numbers of such a sequence.
 
     Raises:
@@ -115,7 +115,7 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: Axes = "sxyz") 
 
 
 def euler_from_matrix(matrix: npt.ArrayLike, axes: Axes = "sxyz") -> Angles:
-    """Return Euler angles of a rotation matrix, in radians; several angles fit one matrix.
+    """Return Euler angles of a rotation matrix, in radians; several angles match one matrix.
 
     Args:
         matrix: 3x3 or 4x4.
@@ -135,9 +135,9 @@ def euler_from_matrix(matrix: npt.ArrayLike, axes: Axes = "sxyz") -> Angles:
         cosine = math.hypot(rotation[i, i], rotation[j, i])
         first, last = (rotation[k, j], rotation[k, k]), (rotation[j, i], rotation[i, i])
         middle, is_free = math.atan2(-rotation[k, i], cosine), cosine <= EPSILON
-    if is_free:  # the first and last axis are the same line: only the sum of their angles is known
+    if is_free:  # the first and last axis coincide: only the sum of their angles is known
         first, last = (-rotation[j, k], rotation[j, j]), (0.0, 1.0)
-    # Axes in the order x, z, y and the like are left-handed, so angles have the other sign.
+    # Axis orders such as x, z, y are left-handed, so the angles have the opposite sign.
     sign = 1.0 if (i + 1) % 3 == j else -1.0
     angles = (sign * math.atan2(*first), sign * middle, sign * math.atan2(*last))
     return (angles[2], angles[1], angles[0]) if turns_along else angles
@@ -156,13 +156,13 @@ def euler_from_quaternion(quaternion: npt.ArrayLike, axes: Axes = "sxyz") -> Ang
 
 
 def quaternion_about_axis(angle: float, axis: npt.ArrayLike) -> Quaternion:
-    """Return the quaternion of a turn by an angle in radians about an axis of any length."""
+    """Return the quaternion of a rotation by an angle in radians about an axis of any length."""
     x, y, z = (math.sin(angle / 2) * unit_vector(axis)).tolist()
     return x, y, z, math.cos(angle / 2)
 
 
 def quaternion_matrix(quaternion: npt.ArrayLike) -> Array:
-    """Return the 4x4 rotation matrix of a quaternion of any length; of zero, the identity."""
+    """Return the 4x4 rotation matrix of a quaternion of any length; for zero, the identity."""
     values = floats(quaternion)
     length = float(np.dot(values, values))
     if length < np.finfo(float).eps:
@@ -196,7 +196,7 @@ def rotation_of(matrix: Array) -> tuple[Array, Array]:
 def quaternion_from_matrix(matrix: npt.ArrayLike) -> Quaternion:
     """Return the quaternion of a 4x4 matrix; its w is not negative.
 
-    Scales and shears of the matrix do not matter.
+    Scales and shears of the matrix are ignored.
 
     Raises:
         ValueError: The matrix has no inverse.
@@ -205,7 +205,7 @@ def quaternion_from_matrix(matrix: npt.ArrayLike) -> Quaternion:
     trace = float(np.trace(rotation))
     squares = 1.0 + 2.0 * np.append(np.diag(rotation), trace) - trace
     squares[3] = 1.0 + trace
-    largest = int(np.argmax(squares))  # the one whose root is the most exact
+    largest = int(np.argmax(squares))  # the one whose square root is the most accurate
     values = np.empty(4)
     values[largest] = squares[largest]
     if largest == 3:
@@ -230,7 +230,7 @@ def antisymmetric(rotation: Array) -> Array:
 
 
 def quaternion_multiply(quaternion1: Any, quaternion0: Any) -> Quaternion:
-    """Return the product of two quaternions: the second turn is applied first."""
+    """Return the product of two quaternions: the second rotation is applied first."""
     x1, y1, z1, w1 = quaternion1
     x0, y0, z0, w0 = quaternion0
     return (
@@ -259,14 +259,14 @@ def quaternion_slerp(
     spin: float = 0,
     shortestpath: bool = True,
 ) -> Array:
-    """Return the quaternion at a fraction of the turn from one to another.
+    """Return the quaternion at a fraction of the rotation from one to another.
 
     Args:
         quat0: The quaternion at fraction 0.
         quat1: The quaternion at fraction 1.
-        fraction: From 0 to 1; beyond that, the turn goes on.
-        spin: How many half turns are added on the way.
-        shortestpath: Turn by the shorter of the two ways.
+        fraction: From 0 to 1; beyond that, the rotation continues.
+        spin: The number of half turns added on the way.
+        shortestpath: Use the shorter of the two ways.
     """
     start: Array = unit_vector(floats(quat0, 4))
     end: Array = unit_vector(floats(quat1, 4))
@@ -287,10 +287,10 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: npt.ArrayLike | None = None) -> Array:
-    """Return a random turn; all are equally likely.
+    """Return a random rotation; all are equally likely.
 
     Args:
-        rand: Three random numbers from 0 to 1 that decide.
+        rand: Three random numbers from 0 to 1 to use.
     """
     share, first, second = np.random.random(3) if rand is None else floats(rand)  # noqa: NPY002
     low, high = math.sqrt(1.0 - share), math.sqrt(share)
@@ -300,5 +300,5 @@ def random_quaternion(rand: npt.ArrayLike | None = None) -> Array:
 
 
 def random_rotation_matrix(rand: npt.ArrayLike | None = None) -> Array:
-    """Return the 4x4 matrix of a random turn; see `random_quaternion`."""
+    """Return the 4x4 matrix of a random rotation; see `random_quaternion`."""
     return quaternion_matrix(random_quaternion(rand))

@@ -1,1 +1,1 @@
-"""The place of cv_bridge's compiled part."""
+"""The package of cv_bridge's compiled part."""

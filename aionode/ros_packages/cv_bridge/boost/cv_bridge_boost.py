@@ -1,4 +1,4 @@
-"""The functions that cv_bridge has in C++."""
+"""The functions that cv_bridge implements in C++."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ __all__ = ["CV_MAT_CNWrap", "CV_MAT_DEPTHWrap", "cvtColor2", "cvtColorForDisplay
 
 
 def CV_MAT_CNWrap(cvtype: int) -> int:  # cv_bridge's name
-    """Return the number of channels of a type of OpenCV."""
+    """Return the number of channels of an OpenCV type."""
     return (cvtype >> 3) + 1
 
 
 def CV_MAT_DEPTHWrap(cvtype: int) -> int:  # cv_bridge's name
-    """Return the depth of a type of OpenCV."""
+    """Return the depth of an OpenCV type."""
     return cvtype & 7

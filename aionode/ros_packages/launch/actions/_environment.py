@@ -1,4 +1,4 @@
-"""Actions that change the environment of what follows."""
+"""Actions that change the environment of later actions."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class AppendEnvironmentVariable(Action):
         self.prepend = self._AppendEnvironmentVariable__at_front if prepend is None else prepend
 
     def execute(self, context: LaunchContext) -> None:
-        """Add to it."""
+        """Add to the variable."""
         name = perform_substitutions(context, self.name)
         parts = [context.environment[name]] if name in context.environment else []
         at = 0 if perform_typed_substitution(context, self.prepend, bool) else len(parts)
@@ -88,18 +88,18 @@ class PrependEnvironmentVariable(AppendEnvironmentVariable):
 
 
 class PushEnvironment(Action):
-    """Remembers the environment."""
+    """Saves the environment."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Remember it."""
+        """Save the environment."""
         context.push_environment()
 
 
 class PopEnvironment(Action):
-    """Restores what was remembered last."""
+    """Restores the environment that was saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore the environment."""
         context.pop_environment()
 
 
@@ -107,5 +107,5 @@ class ResetEnvironment(Action):
     """Restores the initial environment."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore the environment."""
         context.reset_environment()

@@ -29,16 +29,16 @@ __all__ = [
 
 
 class EmitEvent(Action):
-    """Hands an event to the handlers."""
+    """Passes an event to the handlers."""
 
     def __init__(self, *, event: Event, **options: Any) -> None:
         super().__init__(**options)
         if not isinstance(event, Event):
-            raise TypeError(f"EmitEvent: event= is {event!r}; launch.events has events")
+            raise TypeError(f"EmitEvent: event= is {event!r}; use an event of launch.events")
         self.event = event
 
     def execute(self, context: LaunchContext) -> None:
-        """Hand it over."""
+        """Pass the event on."""
         context.emit_event_sync(self.event)
 
 
@@ -53,7 +53,7 @@ class Shutdown(EmitEvent):
         self.reason = normalize_to_list_of_substitutions(reason)
 
     def execute(self, context: LaunchContext) -> None:
-        """Hand over the request."""
+        """Pass the request on."""
         reason = perform_substitutions(context, self.reason)
         context.emit_event_sync(ShutdownEvent(reason=reason))
 
@@ -73,7 +73,7 @@ class LogInfo(Action):
 
 
 class RegisterEventHandler(Action):
-    """Has something done whenever something happens."""
+    """Registers a handler, which is called whenever its event happens."""
 
     def __init__(self, event_handler: BaseEventHandler, **options: Any) -> None:
         super().__init__(**options)
@@ -85,7 +85,7 @@ class RegisterEventHandler(Action):
 
 
 class UnregisterEventHandler(Action):
-    """Has it done no more."""
+    """Unregisters a handler."""
 
     def __init__(self, event_handler: BaseEventHandler, **options: Any) -> None:
         super().__init__(**options)
@@ -97,7 +97,7 @@ class UnregisterEventHandler(Action):
 
 
 class TimerAction(Action):
-    """Does something later."""
+    """Executes actions after a delay."""
 
     def __init__(
         self,
@@ -114,11 +114,11 @@ class TimerAction(Action):
         self._TimerAction__is_canceled = False
 
     def cancel(self) -> None:
-        """Do it never, unless it is done already."""
+        """Cancel the timer, unless it has already fired."""
         self._TimerAction__is_canceled = True
 
     def execute(self, context: LaunchContext) -> None:
-        """Begin to wait."""
+        """Start to wait."""
         period = self.period
         if not isinstance(period, int | float):
             period = text_of(context, period)

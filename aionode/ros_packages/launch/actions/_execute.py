@@ -66,13 +66,13 @@ class ExecuteLocal(Action):
     def _ExecuteLocal__arguments_of_ros(
         self, context: LaunchContext
     ) -> list[str | ParameterValues]:
-        """Return what follows the arguments of the description."""
+        """Return the arguments that follow those of the description."""
         return []
 
     def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
         """Return the program and its arguments."""
         first, *rest = self.process_description.cmd
-        # An executable of a package that is not built is a command, and not a path.
+        # An executable of a package that is not built is a command rather than a path.
         command = (
             getattr(first[0], "_ExecutableInPackage__command", None) if len(first) == 1 else None
         )
@@ -80,16 +80,16 @@ class ExecuteLocal(Action):
         return [*words, *(perform_substitutions(context, word) for word in rest)]
 
     def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
-        """Return the name of the program, after which the process is named."""
+        """Return the name of the program, from which the process gets its name."""
         names = getattr(self.process_description.cmd[0][0], "_ExecutableInPackage__names", None)
         return str(names(context)[1]) if callable(names) else Path(words[0]).name
 
     def _ExecuteLocal__node_name_in(self, context: LaunchContext) -> str | None:
-        """Return the full name of the node that the process is, if that is known."""
+        """Return the full name of the process's node, if known."""
         return None
 
     def _ExecuteLocal__autostarts(self, context: LaunchContext) -> bool:
-        """Return whether it is a managed node that is configured and activated."""
+        """Return whether it is a managed node that is configured and activated automatically."""
         return False
 
     def execute(self, context: LaunchContext) -> None:
@@ -147,14 +147,14 @@ class ExecuteLocal(Action):
         try:
             return float(perform_typed_substitution(context, given, float))
         except ValueError as error:
-            raise ValueError(f"{name}: {error}; a number of seconds fits") from None
+            raise ValueError(f"{name}: {error}; use a number of seconds") from None
 
     def _ExecuteLocal__emulates_tty(self, context: LaunchContext) -> bool:
         given = context.launch_configurations.get("emulate_tty", self.emulate_tty)
         return bool(perform_typed_substitution(context, given, bool))
 
     def _ExecuteLocal__prefix(self, context: LaunchContext, program: str) -> list[str]:
-        """Return the command that stands before the program, such as ``gdb --args``."""
+        """Return the command prefixed to the program, such as ``gdb --args``."""
         described = self.process_description
         if described.prefix is not None:
             return shlex.split(perform_substitutions(context, described.prefix))
@@ -180,15 +180,15 @@ class ExecuteLocal(Action):
         return text_of(context, self.output)
 
     def describe(self) -> str:
-        """Return which program it starts, and where that is said."""
+        """Return the program, and the file that defines the action."""
         return f"{type(self).__name__} of {os.path.basename(self._LaunchDescriptionEntity__where)}"  # noqa: PTH119  # with the line
 
     def _ExecuteLocal__note_output(self, output: bytes, stream: int) -> None:
-        """Keep what the process has written: 1 is standard output, 2 is standard error."""
+        """Keep output of the process: 1 is standard output, 2 is standard error."""
         self._ExecuteLocal__cached[stream] += output
 
     def get_stdout(self) -> str:
-        """Return what it has written to standard output so far.
+        """Return the process's standard output so far.
 
         Raises:
             RuntimeError: The action has no ``cached_output=True``.
@@ -196,7 +196,7 @@ class ExecuteLocal(Action):
         return self._ExecuteLocal__written_to(1)
 
     def get_stderr(self) -> str:
-        """Return what it has written to standard error so far.
+        """Return the process's standard error so far.
 
         Raises:
             RuntimeError: The action has no ``cached_output=True``.

@@ -35,7 +35,7 @@ class IncludeLaunchDescription(Action):
         self.launch_arguments = list(pairs() if callable(pairs) else launch_arguments or ())
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """Return the arguments, and what the file has."""
+        """Return the arguments, and the entities of the file."""
         source = self.launch_description_source
         before = context.get_locals_as_dict()
         sets = [SetLaunchConfiguration(*pair) for pair in self.launch_arguments]
@@ -51,14 +51,14 @@ class IncludeLaunchDescription(Action):
 
 
 class Restore(Action):
-    """Makes `ThisLaunchFileDir` that of the including file again."""
+    """Makes `ThisLaunchFileDir` the folder of the including file again."""
 
     def __init__(self, before: dict[str, Any]) -> None:
         super().__init__()
         self.before = before
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore the place of the file."""
+        """Restore the folder of the file."""
         for name in ("current_launch_file_path", "current_launch_file_directory"):
             if name in self.before:
                 context.extend_locals({name: self.before[name]})

@@ -1,4 +1,4 @@
-"""Actions that set, keep and restore launch configurations, and functions as actions."""
+"""Actions that set, save and restore launch configurations, and functions as actions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ __all__ = [
 
 
 class DeclareLaunchArgument(Action):
-    """Says that a description takes an argument."""
+    """Declares an argument of a description."""
 
     def __init__(
         self,
@@ -59,18 +59,18 @@ class DeclareLaunchArgument(Action):
     def _DeclareLaunchArgument__check(self, value: str) -> None:
         if self.choices is not None and value not in self.choices:
             raise ValueError(
-                f"argument '{self.name}' is {value!r}; these fit: {', '.join(self.choices)}"
+                f"argument '{self.name}' is {value!r}; use one of {', '.join(self.choices)}"
             )
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it its default, unless it has a value."""
+        """Set the argument to its default, unless it has a value."""
         context.declared.add(self.name)
         if self.name not in context.launch_configurations:
             if self.default_value is None:
                 described = f" ({self.description})" if self.description else ""
                 raise ValueError(
-                    f"argument '{self.name}'{described} is needed and has no default; "
-                    f"add {self.name}:=VALUE"
+                    f"argument '{self.name}'{described} is required and has no default; add "
+                    f"{self.name}:=VALUE"
                 )
             value = perform_substitutions(context, self.default_value)
             context.launch_configurations[self.name] = value
@@ -106,23 +106,23 @@ class UnsetLaunchConfiguration(Action):
 
 
 class PushLaunchConfigurations(Action):
-    """Remembers the launch configurations."""
+    """Saves the launch configurations."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Remember them."""
+        """Save them."""
         context.push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
-    """Restores what was remembered last."""
+    """Restores the launch configurations that were saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore them."""
         context.pop_launch_configurations()
 
 
 class ResetLaunchConfigurations(Action):
-    """Removes all launch configurations but those given."""
+    """Removes all launch configurations except the given ones."""
 
     def __init__(
         self,
@@ -143,7 +143,7 @@ class ResetLaunchConfigurations(Action):
 
 
 class GroupAction(Action):
-    """Actions together; what they set ends with the group, unless it is not scoped."""
+    """A group of actions; anything they set ends with the group, unless it is not scoped."""
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class GroupAction(Action):
         self._GroupAction__launch_configurations = dict(launch_configurations or {})
 
     def get_sub_entities(self) -> list[Any]:
-        """Return the actions, between those that start and end the scope."""
+        """Return the actions, enclosed by those that begin and end the scope."""
         given = self._GroupAction__launch_configurations
         sets: list[Action] = [SetLaunchConfiguration(*pair) for pair in given.items()]
         if not self._GroupAction__scoped:
@@ -201,7 +201,7 @@ class OpaqueFunction(Action):
         )
 
     def describe(self) -> str:
-        """Return which function it calls."""
+        """Return the name of the function that it calls."""
         function = self._OpaqueFunction__function
         return f"OpaqueFunction({getattr(function, '__name__', function)})"
 
@@ -220,7 +220,7 @@ class OpaqueCoroutine(Action):
     ) -> None:
         super().__init__(**options)
         if not inspect.iscoroutinefunction(coroutine):
-            raise TypeError(f"OpaqueCoroutine: coroutine= is {coroutine!r}; an async function fits")
+            raise TypeError(f"OpaqueCoroutine: coroutine= is {coroutine!r}; use an async function")
         self._OpaqueCoroutine__coroutine = coroutine
         self._OpaqueCoroutine__args = list(args or ())
         self._OpaqueCoroutine__kwargs = dict(kwargs or {})
@@ -231,13 +231,13 @@ class OpaqueCoroutine(Action):
         context.steps.append(Call(self, context.fork()))
 
     async def _OpaqueCoroutine__call(self, context: LaunchContext) -> None:
-        """Run it to its end."""
+        """Run the coroutine to its end."""
         first = () if self._OpaqueCoroutine__ignore_context else (context,)
         await self._OpaqueCoroutine__coroutine(
             *first, *self._OpaqueCoroutine__args, **self._OpaqueCoroutine__kwargs
         )
 
     def describe(self) -> str:
-        """Return which function it runs."""
+        """Return the name of the function that it runs."""
         coroutine = self._OpaqueCoroutine__coroutine
         return f"OpaqueCoroutine({getattr(coroutine, '__name__', coroutine)})"

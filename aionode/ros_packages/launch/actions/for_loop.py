@@ -1,4 +1,4 @@
-"""Actions that are done several times."""
+"""Actions that are repeated."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["ForEach", "ForLoop", "PopLocals", "PushLocals"]
 class ForEach(Action):
     """Calls a function for each set of values; it returns actions.
 
-    The sets are mappings of YAML, with semicolons between them: ``{name: a, id: 1};{name: b}``.
+    The sets are YAML mappings separated by semicolons: ``{name: a, id: 1};{name: b}``.
     """
 
     SEPARATOR = ";"
@@ -43,17 +43,19 @@ class ForEach(Action):
 
 
 def mapping_in(text: str) -> dict[str, Any]:
-    """Return the values in a text of YAML.
+    """Return the values in a YAML text.
 
     Raises:
-        TypeError: It is no mapping.
+        TypeError: It is not a mapping.
     """
     try:
         values = loaded_yaml(text)
     except yaml.YAMLError:
         values = None
     if not isinstance(values, dict):
-        raise TypeError(f"{text.strip()!r} is no set of values; such as '{{name: a, id: 1}}' fits")
+        raise TypeError(
+            f"{text.strip()!r} is not a set of values; use a mapping such as '{{name: a, id: 1}}'"
+        )
     return values
 
 
@@ -79,26 +81,26 @@ class ForLoop(Action):
         try:
             length = int(text)
         except ValueError:
-            raise ValueError(f"length is {text!r}; a whole number fits") from None
+            raise ValueError(f"length is {text!r}; use a whole number") from None
         return [entity for i in range(length) for entity in entities_of(self.function(i=i))]
 
 
 class PushLocals(Action):
-    """Remembers what `context.locals` has, and adds values."""
+    """Saves `context.locals`, and adds values."""
 
     def __init__(self, values: dict[str, str]) -> None:
         super().__init__()
         self.values = values
 
     def execute(self, context: LaunchContext) -> None:
-        """Remember it."""
+        """Save it."""
         context.push_locals()
         context.extend_locals(self.values)
 
 
 class PopLocals(Action):
-    """Restores what was remembered last."""
+    """Restores the locals that were saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore them."""
         context.pop_locals()

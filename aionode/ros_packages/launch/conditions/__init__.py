@@ -38,9 +38,9 @@ def evaluate_condition_expression(
     try:
         return known[text.strip().lower()]
     except KeyError:
-        context.need_present("a condition")  # which may be about an event
+        context.need_present("a condition")  # which may concern an event
         raise InvalidConditionExpressionError(
-            f"condition is {text!r}; true, 1, false and 0 fit"
+            f"condition is {text!r}; use true, 1, false or 0"
         ) from None
 
 

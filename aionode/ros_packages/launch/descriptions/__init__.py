@@ -20,7 +20,7 @@ def substitutions_of(value: SomeSubstitutionsType | None) -> list[Substitution] 
 
 
 class Executable:
-    """A program, its arguments and its surroundings."""
+    """A program, its arguments and its environment."""
 
     def __init__(
         self,

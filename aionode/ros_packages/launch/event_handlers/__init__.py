@@ -24,7 +24,7 @@ __all__ = [
 
 
 class OnActionEventBase(BaseEventHandler):
-    """Reacts to what happens to one action, to those that a function names, or to all."""
+    """Reacts to events of one action, of those that a function selects, or of all."""
 
     _OnActionEventBase__happens = "an event"
 
@@ -52,7 +52,7 @@ class OnActionEventBase(BaseEventHandler):
         self._OnActionEventBase__action_matcher = action_matcher
 
     def describe(self) -> str:
-        """Return what happens to whom."""
+        """Return a description of the event and its target."""
         target, happens = self._OnActionEventBase__action_matcher, self._OnActionEventBase__happens
         if target is None:
             return f"{happens} of any process"
@@ -100,7 +100,7 @@ class OnProcessStart(OnMoment):
 
 
 class OnExecutionComplete(OnMoment):
-    """Reacts to the end of an action, with ``on_completion=``."""
+    """Reacts to the completion of an action, with ``on_completion=``."""
 
     _OnActionEventBase__happens, _OnMoment__argument, _OnMoment__event_cls = (
         "completion",
@@ -110,7 +110,7 @@ class OnExecutionComplete(OnMoment):
 
 
 class OnProcessIO(OnActionEventBase):
-    """Reacts to what a process writes."""
+    """Reacts to the output of a process."""
 
     _OnActionEventBase__happens = "output"
 
@@ -144,5 +144,5 @@ class OnShutdown(BaseEventHandler):
         )
 
     def describe(self) -> str:
-        """Return what happens."""
+        """Return a description of the event."""
         return "shutdown"

@@ -42,5 +42,5 @@ class ExecutionComplete(Event):
 
 
 def matches_action(target_action: Any) -> Callable[[Any], bool]:
-    """Return what is true of one process."""
+    """Return a matcher for the process of one action."""
     return process.matches_action(target_action)

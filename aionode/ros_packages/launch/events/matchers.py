@@ -1,4 +1,4 @@
-"""`launch.events.matchers`: which processes a request concerns."""
+"""`launch.events.matchers`: the processes that a request concerns."""
 
 from __future__ import annotations
 

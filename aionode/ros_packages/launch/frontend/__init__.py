@@ -1,4 +1,4 @@
-"""`launch.frontend`: XML and YAML launch files, and substitutions of a program's own there."""
+"""`launch.frontend`: XML and YAML launch files, and a program's own substitutions in them."""
 
 from __future__ import annotations
 

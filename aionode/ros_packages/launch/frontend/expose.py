@@ -10,16 +10,16 @@ from launch.substitution import Substitution
 __all__ = ["SUBSTITUTIONS", "expose_action", "expose_substitution"]
 
 SUBSTITUTIONS: Final[dict[str, Callable[..., Substitution]]] = {}
-"""The substitution that each name stands for in texts of XML and YAML files."""
+"""The substitution for each name in texts of XML and YAML files."""
 
 ExposedT = TypeVar("ExposedT")
 
 
 def expose_substitution(name: str) -> Callable[[ExposedT], ExposedT]:
-    """Return a decorator that lets ``$(name word…)`` of XML and YAML files mean a substitution.
+    """Return a decorator that makes ``$(name word…)`` of XML and YAML files mean a substitution.
 
-    It is for a class with a class method ``parse``, or for such a function: called with the words,
-    it returns a class and the arguments by name that make the substitution.
+    It decorates a class with a class method ``parse``, or such a function: called with the words,
+    it returns a class and the keyword arguments that create the substitution.
     """
 
     def decorate(exposed: ExposedT) -> ExposedT:
@@ -37,9 +37,9 @@ def expose_substitution(name: str) -> Callable[[ExposedT], ExposedT]:
 
 
 def expose_action(name: str) -> Callable[[ExposedT], ExposedT]:
-    """Return a decorator that leaves an action as it is: files in Python use it by its class.
+    """Return a decorator that leaves an action unchanged: Python files use it by its class.
 
-    XML and YAML launch files have no elements of a program's own here.
+    Custom elements in XML and YAML launch files are not supported here.
     """
 
     def decorate(exposed: ExposedT) -> ExposedT:
@@ -50,13 +50,13 @@ def expose_action(name: str) -> Callable[[ExposedT], ExposedT]:
 
 
 def parse_of(exposed: Any, name: str) -> Any:
-    """Return what makes a thing from the words of a file.
+    """Return the function that creates an object from the words of a file.
 
     Raises:
-        RuntimeError: It has no such method, and is no function.
+        RuntimeError: It has no such method, and is not a function.
     """
     parse = getattr(exposed, "parse", None) if isinstance(exposed, type) else exposed
     if not callable(parse):
-        problem = f"{name}: {exposed!r} has no class method 'parse', and is no function"
-        raise RuntimeError(problem)  # as launch
+        problem = f"{name}: {exposed!r} has no class method 'parse', and is not a function"
+        raise RuntimeError(problem)  # as in launch
     return parse

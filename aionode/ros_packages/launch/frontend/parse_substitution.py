@@ -13,14 +13,14 @@ __all__ = ["parse_words"]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 MOST_LEVELS = 100
-"""Most substitutions within one another."""
+"""The deepest nesting of substitutions."""
 
 
 def parse_words(text: str) -> list[Substitution]:
     """Return the substitutions that make up a text.
 
     Raises:
-        ValueError: A name is not known, or a bracket is not closed.
+        ValueError: A name is unknown, or a bracket is not closed.
     """
     reader = Reader(text)
     parts = reader.parts(until="")
@@ -36,7 +36,7 @@ class Reader:
         self._depth = 0
 
     def parts(self, until: str) -> list[Substitution]:
-        """Return what comes before one of these characters, or before the end."""
+        """Return the parts before one of these characters, or before the end."""
         texts: list[Substitution] = []
         plain = ""
         while self.at < len(self.text) and self.text[self.at] not in (until or "\0"):
@@ -65,7 +65,7 @@ class Reader:
         self.at += 2
         match = NAME.match(self.text, self.at)
         if match is None:
-            raise ValueError(f"'{self.text[begin : begin + 20]}': a name follows '$('")
+            raise ValueError(f"'{self.text[begin : begin + 20]}': expected a name after '$('")
         self.at = match.end()
         words: list[Any] = []
         while self.peek() == " ":
@@ -78,7 +78,7 @@ class Reader:
         return make(match.group(), words)
 
     def word(self) -> list[Substitution]:
-        """Return one argument, which may stand in quotes."""
+        """Return one argument, which may be quoted."""
         quote = self.peek()
         if quote and quote in "'\"":
             self.at += 1
@@ -98,10 +98,10 @@ def make(name: str, words: list[Any]) -> Substitution:
     """Return the substitution of this name with these arguments."""
     if name not in SUBSTITUTIONS:
         known = ", ".join(sorted(SUBSTITUTIONS))
-        raise ValueError(f"'$({name} …)' is not a substitution; there are: {known}")
+        raise ValueError(f"'$({name} …)' is not a substitution; use one of: {known}")
     try:
         return SUBSTITUTIONS[name](*words)
     except TypeError as error:
         raise ValueError(f"'$({name} …)' takes other arguments: {error}") from error
     except IndexError as error:
-        raise ValueError(f"'$({name})' needs an argument") from error
+        raise ValueError(f"'$({name})' requires an argument") from error

@@ -33,10 +33,10 @@ class Parser:
 
     @classmethod
     def load(cls, file: str | os.PathLike[str] | TextIO) -> tuple[Entity, Parser]:
-        """Return what a file has, and what makes a description of it.
+        """Return the content of a file, and a parser that makes a description of it.
 
         Raises:
-            InvalidFrontendLaunchFileError: It is no launch file in XML or YAML.
+            InvalidFrontendLaunchFileError: It is not a launch file in XML or YAML.
         """
         from aionode.launch.running import description_of_text  # which imports this package
 
@@ -57,10 +57,10 @@ class Parser:
 
     @classmethod
     def get_available_extensions(cls) -> list[str]:
-        """Return the endings of such files."""
+        """Return the extensions of such files."""
         return list(ENDINGS)
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Return whether a file has such an ending."""
+        """Return whether a file has such an extension."""
         return filename.endswith(tuple(f".{ending}" for ending in ENDINGS))

@@ -1,4 +1,4 @@
-"""`launch.launch_description_sources`: the files that are included."""
+"""`launch.launch_description_sources`: included files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ __all__ = [
 
 
 class LaunchDescriptionSource:
-    """A description, or a file that has one."""
+    """A description, or a file that contains one."""
 
     _LaunchDescriptionSource__kind: ClassVar[str] = "any"
 
@@ -59,7 +59,7 @@ class LaunchDescriptionSource:
         return context.load_file(self.location, self._LaunchDescriptionSource__kind)
 
     def try_get_launch_description_without_context(self) -> Any:
-        """Return the description if it is known."""
+        """Return the description if it is already known."""
         return self._LaunchDescriptionSource__description
 
 
@@ -93,7 +93,7 @@ class YAMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
 
 
 def load_python_launch_file_as_module(python_launch_file_path: str) -> ModuleType:
-    """Run a file of Python, whatever its ending, and return its module for a launch file to use."""
+    """Run a Python file, whatever its extension, and return its module."""
     loader = SourceFileLoader("python_launch_file", python_launch_file_path)
     spec = spec_from_loader(loader.name, loader)
     assert spec is not None  # noqa: S101  # a loader of source always gives one
@@ -107,10 +107,10 @@ class InvalidPythonLaunchFileError(InvalidLaunchFileError):
 
 
 def get_launch_description_from_python_launch_file(python_launch_file_path: str) -> Any:
-    """Return the description in a file of Python, whatever its ending.
+    """Return the description in a Python file, whatever its extension.
 
     Raises:
-        InvalidPythonLaunchFileError: It fails, or has no description.
+        InvalidPythonLaunchFileError: It fails, or contains no description.
     """
     return described(python_launch_file_path, ("py",), InvalidPythonLaunchFileError)
 
@@ -119,7 +119,7 @@ def get_launch_description_from_frontend_launch_file(launch_file_path: str) -> A
     """Return the description in a file in XML or YAML.
 
     Raises:
-        InvalidFrontendLaunchFileError: It is no such file.
+        InvalidFrontendLaunchFileError: It is not such a file.
     """
     return described(launch_file_path, ENDINGS, InvalidFrontendLaunchFileError)
 
@@ -128,13 +128,13 @@ def get_launch_description_from_any_launch_file(launch_file_path: str) -> Any:
     """Return the description in a file in Python, XML or YAML.
 
     Raises:
-        InvalidLaunchFileError: It is no such file.
+        InvalidLaunchFileError: It is not such a file.
     """
     return described(launch_file_path, ("py", *ENDINGS), InvalidLaunchFileError)
 
 
 def described(path: str, endings: tuple[str, ...], failure: type[InvalidLaunchFileError]) -> Any:
-    """Return the description in a file of one of the languages that have these endings."""
+    """Return the description in a file with one of these extensions."""
     from aionode.launch.running import description_of_text  # which imports this package
 
     try:

@@ -59,12 +59,12 @@ __all__ = [
 
 
 def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
-    """Return the truth of a text."""
+    """Return the truth value of a text."""
     text = text_of(context, sub)
     try:
         return bool(coerce_to_type(text, bool))
     except ValueError as error:
-        raise SubstitutionFailure(f"{error}; true and false fit") from error
+        raise SubstitutionFailure(f"{error}; use true or false") from error
 
 
 class LaunchConfiguration(Substitution):
@@ -97,13 +97,13 @@ class LaunchConfiguration(Substitution):
         if self._LaunchConfiguration__default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
             raise SubstitutionFailure(
-                f"launch configuration '{name}' does not exist here; there are: {known}"
+                f"launch configuration '{name}' does not exist here; known are: {known}"
             )
         return perform_substitutions(context, self._LaunchConfiguration__default)
 
 
 class WithDefault(Substitution):
-    """The value that a name has, or a default."""
+    """The value of a name, or a default."""
 
     _Substitution__second_word = "default_value"
     _WithDefault__problem = "'{}' does not exist"
@@ -154,7 +154,7 @@ class PathJoinSubstitution(Substitution):
 
 
 class PathSubstitution(PathJoinSubstitution):
-    """A path, to which parts are added with ``/``."""
+    """A path that ``/`` extends."""
 
     def __init__(self, path: SomeSubstitutionsType) -> None:
         super().__init__([path])
@@ -199,7 +199,7 @@ class LaunchLogDir(Substitution):
 
 
 class LocalSubstitution(Substitution):
-    """A value that an entity left for those after it."""
+    """A value that an entity left for later ones."""
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
@@ -214,13 +214,13 @@ class LocalSubstitution(Substitution):
 
 
 class ForEachVar(WithDefault):
-    """A value of the set that a ``for_each`` of a file is at."""
+    """The current value of a ``for_each`` in a file."""
 
-    _WithDefault__problem = "no loop around this has '{}', and there is no default"
+    _WithDefault__problem = "no enclosing loop has '{}', and there is no default"
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
-        """Return under which name `locals` has the value."""
+        """Return the name of the value in `locals`."""
         return f"ForEachVar__{name}"
 
     def _WithDefault__find(self, context: LaunchContext, name: str) -> str | None:
@@ -229,11 +229,11 @@ class ForEachVar(WithDefault):
 
 
 class ForLoopIndex(ForEachVar):
-    """The number that a ``for`` of a file is at."""
+    """The current number of a ``for`` in a file."""
 
 
 class AnonName(Substitution):
-    """A name with a random end, the same each time within one description."""
+    """A name with a random suffix, the same each time within one description."""
 
     def __init__(self, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
@@ -250,7 +250,7 @@ class AnonName(Substitution):
 
 
 class FindExecutable(Substitution):
-    """The path of a program, found as a shell does."""
+    """The path of a program, searched as a shell does."""
 
     def __init__(self, *, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
@@ -270,9 +270,9 @@ class FindExecutable(Substitution):
 
 
 def program_of(name: str, context: LaunchContext) -> str | None:
-    """Return the path of a program on the PATH, or of one that is installed beside this Python.
+    """Return the path of a program on the PATH, or installed beside this Python.
 
-    The PATH lacks those where the environment of this Python has not been activated.
+    The PATH lacks the latter if this Python's environment is not activated.
     """
     path = context.environment.get("PATH")
     return shutil.which(name, path=path) or shutil.which(name, path=sysconfig.get_path("scripts"))
@@ -280,7 +280,7 @@ def program_of(name: str, context: LaunchContext) -> str | None:
 
 def missing_program(name: str) -> str:
     """Return the error text for a missing program, with its remedy."""
-    remedy = "; pip install 'aionode[xacro]' brings it" if Path(name).name == "xacro" else ""
+    remedy = "; pip install 'aionode[xacro]' installs it" if Path(name).name == "xacro" else ""
     return f"{name!r} not found on the PATH{remedy}"
 
 
@@ -318,13 +318,13 @@ class Command(Substitution):
         on_stderr = perform_substitutions(context, self.on_stderr)
         if on_stderr not in ("fail", "ignore", "warn", "capture"):
             raise SubstitutionFailure(
-                f"on_stderr is {on_stderr!r}; fail, ignore, warn and capture fit"
+                f"on_stderr is {on_stderr!r}; use fail, ignore, warn or capture"
             )
         stderr = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
         try:
             words = shlex.split(line)
         except ValueError as error:
-            raise SubstitutionFailure(f"command {line!r} cannot be read: {error}") from error
+            raise SubstitutionFailure(f"command {line!r} cannot be parsed: {error}") from error
         if not words:
             raise SubstitutionFailure("the command is empty")
         program = program_of(words[0], context)
@@ -357,10 +357,10 @@ class Command(Substitution):
 
 
 def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
-    """Return what a command writes to stdout and to stderr, and wait for its end.
+    """Return a command's output on stdout and stderr, after it has ended.
 
     Raises:
-        SubstitutionFailure: it writes more than there can be of a file.
+        SubstitutionFailure: it writes more than a file may contain.
     """
     pieces: dict[str, list[bytes]] = {"stdout": [], "stderr": []}
     left = LARGEST_FILE
@@ -377,7 +377,8 @@ def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
                     if not piece:
                         selector.unregister(key.fileobj)
         finally:
-            if selector.get_map():  # too much, or Ctrl-C: its end would be waited for
+            # too much output, or Ctrl-C: otherwise we would wait for its end
+            if selector.get_map():
                 process.kill()
     if left < 0:
         raise SubstitutionFailure(f"command {line!r} writes more than {LARGEST_FILE} bytes")
@@ -386,7 +387,7 @@ def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
 
 
 class PythonExpression(Substitution):
-    """The value of an expression of Python, as text."""
+    """The value of a Python expression, as text."""
 
     def __init__(
         self,
@@ -416,14 +417,14 @@ class PythonExpression(Substitution):
         try:
             return str(eval(expression, {}, known))  # noqa: S307  # the launch file is the user's own program
         except Exception as error:
-            context.need_present(self.describe())  # it may be about an event
+            context.need_present(self.describe())  # it may concern an event
             raise SubstitutionFailure(
                 f"expression {expression!r} fails: {type(error).__name__}: {error}"
             ) from error
 
 
 def as_text(value: Any) -> Any:
-    """Return a value as `EqualsSubstitution` compares it."""
+    """Return a value in the form that `EqualsSubstitution` compares."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -432,7 +433,7 @@ def as_text(value: Any) -> Any:
 
 
 class EqualsSubstitution(Substitution):
-    """Whether two texts are equal, as truths, as numbers or as they are."""
+    """Whether two texts are equal: as truth values, as numbers or literally."""
 
     def __init__(self, left: Any, right: Any) -> None:
         self.left = normalize_to_list_of_substitutions(as_text(left))
@@ -460,7 +461,7 @@ class NotEqualsSubstitution(EqualsSubstitution):
 
 
 class NotSubstitution(Substitution):
-    """The contrary."""
+    """The negation of a condition."""
 
     def __init__(self, value: SomeSubstitutionsType) -> None:
         self.value = value
@@ -471,7 +472,7 @@ class NotSubstitution(Substitution):
 
 
 class AnySubstitution(Substitution):
-    """Whether one of several holds."""
+    """Whether any of several conditions holds."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self._AnySubstitution__parts = args
@@ -482,7 +483,7 @@ class AnySubstitution(Substitution):
 
 
 class AllSubstitution(Substitution):
-    """Whether all of several hold."""
+    """Whether all of several conditions hold."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self._AllSubstitution__parts = args
@@ -493,14 +494,14 @@ class AllSubstitution(Substitution):
 
 
 class AndSubstitution(AllSubstitution):
-    """Whether both hold."""
+    """Whether both conditions hold."""
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
 
 
 class OrSubstitution(AnySubstitution):
-    """Whether one of two holds."""
+    """Whether one of two conditions holds."""
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
@@ -518,6 +519,6 @@ class IfElseSubstitution(Substitution):
         self.condition, self.if_value, self.else_value = condition, if_value, else_value
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the text that the condition chooses."""
+        """Return the text that the condition selects."""
         chosen = self.if_value if boolean(context, self.condition) else self.else_value
         return text_of(context, chosen)

@@ -1,4 +1,4 @@
-"""`launch.utilities`: what launch files and helpers of launch files use of it."""
+"""`launch.utilities`: the functions that launch files and their helpers use."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def normalize_to_list_of_entities(entities: Any) -> list[Any]:
 def ensure_argument_type(
     argument: object, types: Any, argument_name: str, caller: str | None = None
 ) -> None:
-    """Raise TypeError if an argument is of none of these types."""
+    """Raise TypeError if an argument has none of these types."""
     fitting = tuple(types) if isinstance(types, list | tuple) else (types,)
     if not isinstance(argument, fitting):
         where = f"{caller}: " if caller else ""

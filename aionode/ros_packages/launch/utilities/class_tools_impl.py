@@ -1,4 +1,4 @@
-"""`launch.utilities.class_tools_impl`: what an object or a class is."""
+"""`launch.utilities.class_tools_impl`: checks of objects and classes."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ def is_a_subclass(obj: Any, entity_type: type) -> bool:
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object is an instance of a class, and no module, class or function."""
+    """Return whether an object is an instance of a class, and not a module, class or function."""
     return not (inspect.ismodule(obj) or inspect.isclass(obj) or inspect.isroutine(obj))

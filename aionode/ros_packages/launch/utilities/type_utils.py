@@ -1,4 +1,4 @@
-"""`launch.utilities.type_utils`: texts that stand for values of another type."""
+"""`launch.utilities.type_utils`: texts that stand for values of other types."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SCALARS = (bool, int, float, str)
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or a list with one."""
+    """Return whether a value is a substitution, or a list that contains one."""
     if isinstance(value, Substitution):
         return True
     return isinstance(value, list | tuple) and any(isinstance(item, Substitution) for item in value)
@@ -59,7 +59,7 @@ def coerce_to_type(text: str, data_type: Any = None) -> Any:
 
 
 def fits(value: Any, data_type: Any) -> bool:
-    """Return whether a value is of a type, which may be a list of a type."""
+    """Return whether a value has a type, which may be a list of a type."""
     if get_origin(data_type) is list:
         (item_type,) = get_args(data_type)
         return isinstance(value, list) and all(fits(item, item_type) for item in value)
@@ -67,7 +67,7 @@ def fits(value: Any, data_type: Any) -> bool:
 
 
 def is_uniform(value: Any) -> bool:
-    """Return whether a value is a list of which all items have one scalar type."""
+    """Return whether a value is a list whose items all have one scalar type."""
     return (
         isinstance(value, list)
         and bool(value)
@@ -82,12 +82,12 @@ def type_name(data_type: Any) -> str:
 
 
 def normalize_typed_substitution(value: Any, data_type: Any = None) -> Any:
-    """Return a value as it is, or the substitutions that make it up as a list."""
+    """Return a value unchanged, or as a list of the substitutions that make it up."""
     return normalize_to_list_of_substitutions(value) if is_substitution(value) else value
 
 
 def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any = None) -> Any:
-    """Return a value, of this type if it was a text or substitutions.
+    """Return a value, converted to this type if it was a text or substitutions.
 
     Raises:
         ValueError: It is of another type.

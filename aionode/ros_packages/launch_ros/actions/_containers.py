@@ -1,4 +1,4 @@
-"""Nodes that share one process."""
+"""Nodes that share a process."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["ComposableNodeContainer", "LoadComposableNodes"]
 
 
 class ComposableNodeContainer(Node):
-    """Starts a container, and gives it nodes.
+    """Starts a container, and loads nodes into it.
 
     A container whose nodes are all aionode classes needs no process: they run as tasks.
     """
@@ -48,7 +48,7 @@ class ComposableNodeContainer(Node):
             context, self._ComposableNodeContainer__composable_node_descriptions
         )
         if components and all(component.is_aionode for component in components):
-            self._ExecuteLocal__arguments_of_ros(context)  # which settles its name
+            self._ExecuteLocal__arguments_of_ros(context)  # which determines its name
         else:
             try:
                 super().execute(context)
@@ -67,8 +67,8 @@ class ComposableNodeContainer(Node):
         """Record the nodes that need the container, which does not exist.
 
         Raises:
-            PackageNotFoundError: Nothing may be left out. It is of the package of such a node if
-                that says what it is, else of the container's.
+            PackageNotFoundError: Nothing may be left out. It names the package of such a node, if
+                that tells more, otherwise the container's.
         """
         foreign = [each for each in components if not each.is_aionode]
         known = [each.package for each in foreign if remark_on(each.package)]
@@ -84,7 +84,7 @@ class ComposableNodeContainer(Node):
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A node that a container does not get."""
+    """A node that is not loaded into a container."""
 
     plugin: str
     _LaunchDescriptionEntity__where: str
@@ -95,7 +95,7 @@ class LeftOut:
 
 
 class LoadComposableNodes(Action):
-    """Gives nodes to a container that is started elsewhere."""
+    """Loads nodes into a container that is started elsewhere."""
 
     def __init__(
         self,

@@ -32,7 +32,7 @@ class LifecycleNode(Node):
         self._LifecycleNode__autostart = autostart
 
     def _ExecuteLocal__autostarts(self, context: LaunchContext) -> bool:
-        """Return whether the node is configured and activated."""
+        """Return whether the node is configured and activated automatically."""
         return bool(perform_typed_substitution(context, self._LifecycleNode__autostart, bool))
 
 

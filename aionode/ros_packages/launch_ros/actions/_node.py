@@ -46,7 +46,7 @@ class Node(ExecuteProcess):
             words += ["--ros-args", *as_words(ros_arguments)]
         super().__init__(cmd=words, name=exec_name, **options)
         if parameters is not None and not isinstance(parameters, list | tuple):
-            raise TypeError(f"Node: parameters= is {parameters!r}; a list fits")
+            raise TypeError(f"Node: parameters= is {parameters!r}; use a list")
         self.node_executable = executable
         self.node_package = package
         self._Node__given_name = name
@@ -64,7 +64,7 @@ class Node(ExecuteProcess):
         return self._Node__full_name
 
     def is_node_name_fully_specified(self) -> bool:
-        """Return whether the description gives the node its name and its namespace."""
+        """Return whether the description specifies both the node's name and its namespace."""
         return "<" not in self.node_name
 
     def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
@@ -87,7 +87,7 @@ class Node(ExecuteProcess):
     def _ExecuteLocal__arguments_of_ros(
         self, context: LaunchContext
     ) -> list[str | ParameterValues]:
-        """Return what follows ``--ros-args``: name, namespace, parameters, remapping rules."""
+        """Return the words after ``--ros-args``: name, namespace, parameters, remapping rules."""
         name = text_or_none(context, self._Node__given_name)
         if name is not None:
             validate_node_name(name)
@@ -108,23 +108,23 @@ class Node(ExecuteProcess):
         return arguments
 
     def describe(self) -> str:
-        """Return which node it is, by its name where that is known."""
+        """Return a description of the node, by its name if known."""
         named = self._Node__given_name if isinstance(self._Node__given_name, str) else None
         executable = normalize_to_list_of_substitutions(self.node_executable)
         return named or "".join(getattr(sub, "text", sub.describe()) for sub in executable)
 
 
 def as_words(arguments: Iterable[Any] | None) -> list[Any]:
-    """Return arguments one by one; a single text is one argument."""
+    """Return arguments as separate words; a single text is one argument."""
     if arguments is None:
         return []
     return [arguments] if isinstance(arguments, str) else list(arguments)
 
 
 def command_of(executable: str) -> list[str]:
-    """Return the command of an executable that stands in no package.
+    """Return the command of an executable without a package.
 
-    That is a program; a file of Python, which may be a program of rclpy; or a class of a node, as
+    It may be a program; a Python file, such as a program of rclpy; or a node class, as
     ``module:Class`` or ``file.py:Class``.
     """
     if ":" in executable and not Path(executable).exists():

@@ -1,4 +1,4 @@
-"""Actions that concern all nodes after them, to the end of their group."""
+"""Actions that apply to all later nodes, to the end of their group."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ __all__ = [
 
 
 def add(context: LaunchContext, key: str, values: list[Any]) -> None:
-    """Add to a list that ends with the group: the list of the outer group stays as it is."""
+    """Add to a list that ends with the group; the outer group's list stays unchanged."""
     context.launch_configurations[key] = [*context.launch_configurations.get(key, ()), *values]
 
 
 class PushROSNamespace(Action):
-    """Puts nodes into a namespace."""
+    """Adds a namespace for nodes."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **options: Any) -> None:
         super().__init__(**options)
         self.namespace = normalize_to_list_of_substitutions(namespace)
 
     def execute(self, context: LaunchContext) -> None:
-        """Push it."""
+        """Add the namespace."""
         pushed = perform_substitutions(context, self.namespace)
         context.launch_configurations["ros_namespace"] = namespace_in(context, pushed)
 
@@ -50,7 +50,7 @@ PushRosNamespace = PushROSNamespace
 
 
 class SetParameter(Action):
-    """Gives a parameter to all nodes."""
+    """Sets a parameter of all nodes."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **options: Any) -> None:
         super().__init__(**options)
@@ -64,7 +64,7 @@ class SetParameter(Action):
 
 
 class SetParametersFromFile(Action):
-    """Gives a parameter file to all nodes."""
+    """Sets a parameter file for all nodes."""
 
     def __init__(self, filename: SomeSubstitutionsType, **options: Any) -> None:
         super().__init__(**options)
@@ -80,7 +80,7 @@ class SetParametersFromFile(Action):
 
 
 class SetUseSimTime(Action):
-    """Says whether launch's own node uses simulated time; the others have a parameter for it."""
+    """Sets whether launch's own node uses simulated time; other nodes have a parameter for it."""
 
     def __init__(self, value: Any, **options: Any) -> None:
         super().__init__(**options)
@@ -88,7 +88,7 @@ class SetUseSimTime(Action):
 
 
 class SetRemap(Action):
-    """Gives a remapping rule to all nodes."""
+    """Sets a remapping rule for all nodes."""
 
     def __init__(
         self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **options: Any
@@ -104,7 +104,7 @@ class SetRemap(Action):
 
 
 class SetROSLogDir(Action):
-    """Says where nodes write their logs."""
+    """Sets the folder for the logs of nodes."""
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **options: Any) -> None:
         super().__init__(**options)
@@ -116,7 +116,7 @@ class SetROSLogDir(Action):
 
 
 class ROSTimer(TimerAction):
-    """Does something later."""
+    """Executes actions after a delay."""
 
 
 RosTimer = ROSTimer

@@ -26,7 +26,7 @@ __all__ = ["ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
 
 
 class ComposableNode:
-    """A node that a container gets: a plugin of C++, or a class of Python as ``module:Class``."""
+    """A node for a container: a C++ plugin, or a Python class as ``module:Class``."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class ComposableNode:
         return self._ComposableNode__condition
 
     def _ComposableNode__component(self, context: LaunchContext) -> Component | None:
-        """Return what the container gets; None if the condition does not hold."""
+        """Return the component for the container; None if the condition does not hold."""
         if (
             self._ComposableNode__condition is not None
             and not self._ComposableNode__condition.evaluate(context)
@@ -85,5 +85,5 @@ class ComposableNode:
 
 
 def as_pair(known: Any) -> tuple[Any, Any]:
-    """Return a parameter of all nodes by its name; a file of parameters has none."""
+    """Return a parameter of all nodes by its name; a parameter file has none."""
     return known if isinstance(known, tuple) else (None, known)

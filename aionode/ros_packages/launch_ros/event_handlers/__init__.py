@@ -38,7 +38,7 @@ class OnStateTransition(BaseEventHandler):
         self._OnStateTransition__goal_state = goal_state
 
     def describe(self) -> str:
-        """Return what happens to whom."""
+        """Return a description of the event and its target."""
         node = self._OnStateTransition__target_lifecycle_node
         named = "a managed node" if node is None else node.describe()
         return (

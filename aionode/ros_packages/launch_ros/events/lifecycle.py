@@ -37,6 +37,6 @@ class StateTransition(Event):
 
 
 def matches_node_name(node_name: str) -> Callable[[Any], bool]:
-    """Return what is true of the node with a full name."""
+    """Return a matcher for the node with a full name."""
     name = node_name if node_name.startswith("/") else f"/{node_name}"
     return lambda action: action.node_name == name

@@ -1,4 +1,4 @@
-"""`launch_ros.substitutions`: where packages are, and values that nodes get."""
+"""`launch_ros.substitutions`: the folders of packages, and the parameters of nodes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class FindPackage(Substitution):
         return self.find(perform_substitutions(context, self.package))
 
     def describe(self) -> str:
-        """Return which package it is."""
+        """Return the package that it finds."""
         return f"{type(self).__name__}({''.join(sub.describe() for sub in self.package)})"
 
 
@@ -84,13 +84,13 @@ class ExecutableInPackage(Substitution):
         program = context.packages.executable(*self._ExecutableInPackage__names(context))
         if program.is_standard:
             raise SubstitutionFailure(
-                f"{program.name} of {program.package} is a program of aionode; it has no path, and "
-                "fits as the first word of a command"
+                f"{program.name} of {program.package} is a program of aionode; it has no "
+                "path, but can be the first word of a command"
             )
         if program.root is not None:
             raise SubstitutionFailure(
                 f"{program.name} of {program.package} is a function, {program.target}, until the "
-                "package is built; it has no path, and fits as the first word of a command"
+                "package is built; it has no path, but can be the first word of a command"
             )
         return program.target
 

@@ -1,4 +1,4 @@
-"""`nav2_common.launch`: substitutions for files of parameters."""
+"""`nav2_common.launch`: substitutions for parameter files."""
 
 from __future__ import annotations
 
@@ -103,11 +103,11 @@ class RewrittenYaml(OfFile):
         return written(yaml.safe_dump({root: content} if root else content), folder)
 
     def replaced(self, value: Any, values: Mapping[str, str]) -> Any:
-        """Return what takes the place of a value."""
+        """Return the replacement for a value."""
         return self.converted(values[str(value)]) if str(value) in values else value
 
     def converted(self, text: str) -> Any:
-        """Return the value that a text stands for: true and false, and numbers if wanted."""
+        """Return the value of a text: true and false, and numbers if requested."""
         if self.convert_types:
             try:
                 return float(text) if "." in text else int(text)
@@ -117,7 +117,7 @@ class RewrittenYaml(OfFile):
 
 
 class ReplaceString(OfFile):
-    """The path of a copy of a file in which texts are replaced; of the file, without need."""
+    """The path of a copy of a file in which texts are replaced, or of the file if nothing is."""
 
     def __init__(
         self,
@@ -140,7 +140,7 @@ class ReplaceString(OfFile):
 
 
 class HasNodeParams(OfFile):
-    """Whether a file of parameters has some for a node."""
+    """Whether a parameter file contains parameters of a node."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
@@ -153,7 +153,7 @@ class HasNodeParams(OfFile):
 
 
 class LaunchConfigAsBool(Substitution):
-    """A launch configuration as a truth, however it is written."""
+    """A launch configuration as a truth value, in any spelling."""
 
     def __init__(self, name: str) -> None:
         self.configuration = LaunchConfiguration(name)
@@ -165,12 +165,12 @@ class LaunchConfigAsBool(Substitution):
 
 
 def texts_of(context: LaunchContext, given: Texts) -> dict[str, str]:
-    """Return the texts of substitutions by their names."""
+    """Return the texts of substitutions by name."""
     return {name: text_of(context, value) for name, value in given.items()}
 
 
 def places_in(content: Any, path: str = "") -> Iterator[tuple[Any, Any, str]]:
-    """Yield each place of a value: what it is in, its key or number there, and its path."""
+    """Yield each place within a value: its container, its key or index there, and its path."""
     pairs = list(content.items()) if isinstance(content, dict) else []
     pairs += enumerate(content) if isinstance(content, list) else []
     for key, value in pairs:
@@ -180,7 +180,7 @@ def places_in(content: Any, path: str = "") -> Iterator[tuple[Any, Any, str]]:
 
 
 def add(content: Any, keys: list[str], value: Any) -> None:
-    """Put a value at the end of a path of keys."""
+    """Set a value at the end of a path of keys."""
     *above, last = keys
     for key in above:
         content = content[int(key)] if isinstance(content, list) else content.setdefault(key, {})
@@ -188,14 +188,14 @@ def add(content: Any, keys: list[str], value: Any) -> None:
 
 
 def with_keys(content: Any, keys: Mapping[str, str]) -> Any:
-    """Return the content of a file with other keys."""
+    """Return the content of a file with replaced keys."""
     if not isinstance(content, dict):
         return content
     return {keys.get(key, key): with_keys(value, keys) for key, value in content.items()}
 
 
 def with_values(content: Any, replace: Callable[[Any], Any]) -> Any:
-    """Return the content of a file with other values."""
+    """Return the content of a file with replaced values."""
     if isinstance(content, dict):
         return {key: with_values(value, replace) for key, value in content.items()}
     if isinstance(content, list):
@@ -210,7 +210,7 @@ def folder_of_copies() -> tempfile.TemporaryDirectory[str]:
 
 
 def written(text: str, folder: str | None = None) -> str:
-    """Return the path of a new file with this text."""
+    """Write a text to a new file, and return its path."""
     descriptor, path = tempfile.mkstemp(dir=folder or folder_of_copies().name, suffix=".yaml")
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
         file.write(text)

@@ -1,1 +1,1 @@
-"""The parts from which rclpy's modules are built: handles, queues, and a context's thread."""
+"""The parts from which rclpy's modules are built: handles, queues, and the thread of a context."""

@@ -1,4 +1,4 @@
-"""Handles of action servers and clients: three services and two topics, as rcl_action has them."""
+"""Handles of action servers and clients: three services and two topics, as in rcl_action."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["ActionClientHandle", "ActionHandle", "ActionServerHandle", "Expiry", "GoalEvent"]
 
 RETRY_S = 0.001
-"""Time for which states wait for a thread that is sending earlier ones, in seconds."""
+"""How long status messages wait for a thread that is sending earlier ones, in seconds."""
 
 steady_ns = MachineTime().steady_ns
 
@@ -39,10 +39,10 @@ def now_s() -> float:
 
 
 class Goal(Protocol):
-    """The part of a `ServerGoalHandle` that status messages and answers to clients show.
+    """The part of a `ServerGoalHandle` shown in status messages and answers to clients.
 
     Attributes:
-        _goal_info: Its id, and when it was accepted.
+        _goal_info: Its id and acceptance time.
         _status: Its state.
     """
 
@@ -51,7 +51,7 @@ class Goal(Protocol):
 
 
 def goal_key(info: Any, status: GoalStatus = GoalStatus.UNKNOWN) -> GoalKey:
-    """Return what cancel requests select a goal by."""
+    """Return the key by which cancel requests select a goal."""
     stamp_ns = info.stamp.sec * S_TO_NS + info.stamp.nanosec
     return GoalKey(bytes(info.goal_id.uuid), stamp_ns, status)
 
@@ -88,7 +88,7 @@ class ActionHandle(Destroyable):
 
         def add(handle_class: Any, type_: Any, part_name: str, qos: Any) -> Any:
             part = handle_class(node, type_, f"{name}/{part_name}", qos)
-            self.parts.append(part)  # now: if a later one cannot be made, this one is destroyed
+            self.parts.append(part)  # now: if a later one cannot be created, this one is destroyed
             return part
 
         self.goal = add(service_class, impl.SendGoalService, "send_goal", goal_qos)
@@ -98,7 +98,7 @@ class ActionHandle(Destroyable):
         self.status = add(topic_class, impl.GoalStatusMessage, "status", status_qos)
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Add the handles whose readiness matters."""
+        """Add the handles that can become ready."""
         for part in self.parts:
             if isinstance(part, SubscriptionHandle):
                 wait_set.add_subscription(part)
@@ -134,7 +134,7 @@ class ActionClientHandle(ActionHandle):
         self.context_handle = node.context_handle
 
     def is_action_server_available(self) -> bool:
-        """Return whether everything that belongs to a server exists.
+        """Return whether all parts of a server exist.
 
         Raises:
             RCLError: the context is shut down.
@@ -147,7 +147,7 @@ class ActionClientHandle(ActionHandle):
 
 
 class Expiry(Destroyable):
-    """When the next goal is to be forgotten: a timer, for wait sets.
+    """When the next goal result expires: a timer, for wait sets.
 
     Attributes:
         goals: The goals.
@@ -161,17 +161,17 @@ class Expiry(Destroyable):
         self.forgotten: list[Any] = []
 
     def keep(self, goal_id: bytes) -> None:
-        """Keep a goal that has ended for the time of results, and forget the oldest of too many."""
+        """Keep an ended goal until its result times out, and forget the oldest of too many."""
         self.forgotten += self.goals.keep(goal_id)
         self.signal.notify()
 
     def ready(self) -> bool:
-        """Return whether one is to be forgotten now, or was."""
+        """Return whether a goal has expired, or was forgotten."""
         due_ns = self.goals.due_ns
         return bool(self.forgotten) or (due_ns is not None and self._clock.now_ns() >= due_ns)
 
     def due_in_ns(self) -> int | None:
-        """Return how long it is until then; None if no goal has ended."""
+        """Return the time until the next goal expires; None if no goal has ended."""
         due_ns = self.goals.due_ns
         if due_ns is None or self._clock.ros_time_is_active:
             return None
@@ -188,7 +188,7 @@ class ActionServerHandle(ActionHandle):
 
     Args:
         node: Its node.
-        clock: Shows how long results have been kept.
+        clock: The clock for the age of results.
         action_type: The action class.
         action_name: Its name.
         qos: The profiles, in the order of `ActionHandle`.
@@ -206,8 +206,8 @@ class ActionServerHandle(ActionHandle):
         result_timeout: float,
         max_goals: int,
     ) -> None:
-        # Held until the states are sent: none may arrive after a newer one. A handler of a signal
-        # that ends a goal meanwhile leaves the states to the thread that it has interrupted.
+        # Held until the status is sent: none may arrive after a newer one. A signal handler that
+        # ends a goal meanwhile leaves the status to the thread that it has interrupted.
         self._status_lock = threading.RLock()
         self._is_sending_status = False
         self._has_newer_status = False
@@ -231,7 +231,7 @@ class ActionServerHandle(ActionHandle):
         """Add a new goal.
 
         Raises:
-            RCLError: there is one of this id.
+            RCLError: there is one with this id.
         """
         goal_id = bytes(goal._goal_info.goal_id.uuid)
         if goal_id in self.goals:
@@ -239,7 +239,7 @@ class ActionServerHandle(ActionHandle):
         self.goals[goal_id] = goal
 
     def publish_status(self) -> None:
-        """Publish the states of all goals: now, or after a delay if there are many."""
+        """Publish the status of all goals: now, or after a delay if there are many."""
         with self._status_lock:
             self._has_newer_status = True
             if self._is_sending_status or self._waits_to_send:
@@ -255,15 +255,15 @@ class ActionServerHandle(ActionHandle):
         self._io.loop.call_later(wait_s, self._send_waiting)
 
     def _send_waiting(self) -> None:
-        """Send the states that had to wait; in the thread of the context."""
-        # That must not wait for a thread which may be waiting for it, inside of the lock.
+        """Send the postponed status; in the thread of the context."""
+        # It must not wait for a thread that holds the lock and may be waiting for this thread.
         if not self._status_lock.acquire(blocking=False):
             self._send_later(RETRY_S)
             return
         try:
             if self._waits_to_send:
                 self._waits_to_send = False
-                with suppress(RCLError):  # nobody can be told after shutdown
+                with suppress(RCLError):  # nothing can be sent after shutdown
                     self._send_status()
         finally:
             self._status_lock.release()
@@ -295,7 +295,7 @@ class ActionServerHandle(ActionHandle):
             super()._destroy()
 
     def process_cancel_request(self, request: Any) -> Any:
-        """Return the response to a request to cancel: the goals that its id and time select.
+        """Return the response to a cancel request: the goals selected by its id and time.
 
         The rules are those of `aionode.endpoints.actions.goal.goals_to_cancel`.
         """

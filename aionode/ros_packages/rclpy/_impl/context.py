@@ -1,4 +1,4 @@
-"""The handle of a context: its arguments, and the thread in which it talks to others."""
+"""The handle of a context: its arguments, and the thread in which it communicates."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ __all__ = ["ContextHandle", "contexts_by_id", "living_contexts", "parsed"]
 contexts_by_id: weakref.WeakValueDictionary[int, ContextHandle] = weakref.WeakValueDictionary()
 
 LAST_WORDS_S = 2.0
-"""Time for which a thread may publish after a signal has shut its context down."""
+"""How long a thread may still publish after a signal has shut its context down."""
 
 steady_ns = MachineTime().steady_ns
 
 
 def living_contexts() -> list[ContextHandle]:
-    """Return those that are not shut down; any thread, or handler of a signal, may ask."""
-    # Not iterated over, as other threads create contexts meanwhile.
+    """Return the contexts that are not shut down; any thread or signal handler may call this."""
+    # Not iterated over, because other threads may create contexts meanwhile.
     contexts = [reference() for reference in contexts_by_id.valuerefs()]
     return [context for context in contexts if context is not None]
 
@@ -64,7 +64,7 @@ def parsed(args: Sequence[str]) -> Arguments:
 
 
 class ContextHandle(Destroyable):
-    """A context that is initialised. `signal` is woken by its shutdown.
+    """An initialised context. `signal` is woken when it is shut down.
 
     Args:
         args: The command line.
@@ -74,7 +74,7 @@ class ContextHandle(Destroyable):
         io: The thread that works for it.
         arguments: Its ROS arguments.
         is_shut_down: Whether it is shut down.
-        logs: Whether it has configured logging, or has found it configured.
+        logs: Whether it has configured logging, or found it configured.
 
     Raises:
         UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
@@ -89,7 +89,7 @@ class ContextHandle(Destroyable):
         self.logs = False
         self._closed = False
         self._signalled = False
-        self._told_ns: dict[int, int] = {}  # by thread: when it was told of the signal
+        self._told_ns: dict[int, int] = {}  # by thread: when it learned of the signal
         arguments = parsed(args)
         context = Context(domain_id=domain_id)
         context.arguments = arguments
@@ -106,18 +106,18 @@ class ContextHandle(Destroyable):
         return True
 
     def note_told(self) -> None:
-        """Record that this thread of the program has been told of the shutdown."""
+        """Record that this thread of the program has learned of the shutdown."""
         if self._signalled:
             self._told_ns.setdefault(get_ident(), steady_ns())
 
     def refuse_to_publish(self) -> None:
-        """Raise after shutdown, unless a signal has done that, and the message is a last word.
+        """Raise after shutdown, unless a signal caused it, and the message is a last word.
 
-        A robot is stopped by a message, which many programs publish at their end: in a ``finally``,
-        or after `spin`. With rclpy that is too late, as the signal has shut the context down
-        before. Here a thread may publish for a while after it was told of the shutdown: by an
-        exception, the end of a wait, or `ok`. Not before, as whatever it publishes then, in a
-        loop, belongs to what the signal is to end.
+        A robot is stopped by a message that many programs publish at their end: in a ``finally``,
+        or after `spin`. With rclpy that is too late, because the signal has already shut the
+        context down. Here a thread may publish for a while after it has learned of the shutdown: by
+        an exception, the end of a wait, or `ok`. It may not before, because messages published
+        then, in a loop, belong to the work that the signal is meant to end.
 
         Raises:
             RCLError: it is shut down.
@@ -132,7 +132,7 @@ class ContextHandle(Destroyable):
         return self.io.context.domain_id
 
     def refuse_if_over(self, wanted: str) -> None:
-        """Raise unless something can still be made in this context.
+        """Raise if nothing can be created in this context any more.
 
         Raises:
             InvalidHandle: it is destroyed.
@@ -149,7 +149,7 @@ class ContextHandle(Destroyable):
             )
 
     def refuse_after_shutdown(self, failure: str, user: str = "rcl node") -> None:
-        """Raise after shutdown with rcl's message, which ends programs that retry in a loop.
+        """Raise rcl's error after shutdown, which ends programs that retry in a loop.
 
         Args:
             failure: What fails.
@@ -164,20 +164,23 @@ class ContextHandle(Destroyable):
             raise RCLError(f"{failure}: {user}'s context is invalid")
 
     def mark_shut_down(self) -> None:
-        """Shut down as far as a signal handler may: without taking locks or waiting."""
+        """Shut down as far as a signal handler may: without locks or waiting."""
         self.is_shut_down = True
         self.signal.notify()
 
     def interrupt(self) -> None:
-        """Shut down from a signal handler. `shutdown` is still possible, and never refused."""
+        """Shut down from a signal handler.
+
+        `shutdown` is still possible afterwards, and never refused.
+        """
         self._signalled = True
         self.mark_shut_down()
 
     def shutdown(self) -> None:
-        """Shut down: executors stop to spin.
+        """Shut down: executors stop spinning.
 
         Raises:
-            RuntimeError: it is shut down already, other than by a signal.
+            RuntimeError: it is already shut down, other than by a signal.
         """
         if self._closed and not self._signalled:
             raise RuntimeError("Context already shutdown.")
@@ -186,7 +189,7 @@ class ContextHandle(Destroyable):
         contexts_by_id.pop(id(self), None)
 
     def close(self) -> None:
-        """Send what was published, leave the graph, and end the thread."""
+        """Send everything published, leave the graph, and end the thread."""
         self.io.stop()
 
     def _destroy(self) -> None:
@@ -195,8 +198,8 @@ class ContextHandle(Destroyable):
             self.io.stop()
 
 
-# Called before `_send_thread` ends the threads that send, as that module is imported above: the one
-# registered last is called first.
+# Called before `_send_thread` ends the sending threads, because that module is imported above:
+# functions registered last are called first.
 @atexit.register
 def close_all() -> None:
     """Send what a program has published that ends without `shutdown`."""

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
 
 LONGEST_WAIT_S = 3600.0
-"""Longest wait of one call of the system, in seconds, for a lock or for descriptors.
+"""Longest wait of one system call, in seconds, for a lock or for descriptors.
+
+Some systems refuse more than 24 days, so a longer wait consists of several.
 
 Some systems refuse more than 24 days. A longer wait consists of several.
 """
@@ -26,10 +28,10 @@ steady_ns = MachineTime().steady_ns
 class Wakeup:
     """Wakes one thread; a wake-up that arrives before the wait is kept.
 
-    A single C call on each side, which a signal handler may interrupt anywhere.
+    Each side is a single C call, which a signal handler may interrupt anywhere.
 
     Attributes:
-        rouse: Wakes the thread if it waits for something else meanwhile.
+        rouse: Wakes the thread if it is waiting for something else.
         take: ``take(False)`` returns whether a wake-up has arrived, without waiting.
     """
 
@@ -42,10 +44,10 @@ class Wakeup:
         self.take: Callable[[bool], bool] = self._lock.acquire
 
     def wake(self) -> None:
-        """Wake the thread that waits, or the next one that will."""
+        """Wake the waiting thread, or the next one to wait."""
         try:
             self._lock.release()
-        except RuntimeError:  # it is awake already
+        except RuntimeError:  # it is already awake
             return
         rouse = self.rouse
         if rouse is not None:
@@ -69,30 +71,30 @@ class Wakeable(Protocol):
     """An object that a `Signal` wakes."""
 
     def wake(self) -> None:
-        """Look again."""
+        """Check again."""
 
 
 class Signal:
-    """Tells the threads that wait for an entity, or for any entity of a node, to look again."""
+    """Tells the threads that wait for an entity, or for any entity of a node, to check again."""
 
     __slots__ = ("_wakeups",)
 
     def __init__(self) -> None:
-        # Changed by single calls of C only, which neither another thread nor a handler of a signal
+        # Only changed by single C calls, which neither another thread nor a signal handler
         # interrupts, and read as a copy.
         self._wakeups: list[Wakeable] = []
 
     def add(self, wakeup: Wakeable) -> None:
-        """Wake `wakeup` from now on, once more for each time it is added."""
+        """Wake `wakeup` from now on, once for each time it is added."""
         self._wakeups.append(wakeup)
 
     def remove(self, wakeup: Wakeable) -> None:
-        """Undo one `add`; without one nothing happens."""
+        """Undo one `add`; without a preceding `add` nothing happens."""
         with suppress(ValueError):
             self._wakeups.remove(wakeup)
 
     def notify(self) -> None:
-        """Wake all."""
+        """Wake all threads."""
         for wakeup in tuple(self._wakeups):
             wakeup.wake()
 
@@ -100,7 +102,7 @@ class Signal:
 class Arrivals:
     """Whether anything has arrived for a node's handles of one kind since none was ready.
 
-    With it, an executor looks at the handles of those kinds only for which something has come.
+    With it, an executor checks the handles of a kind only if something has arrived.
 
     Attributes:
         last: Stands for the latest arrival.
@@ -115,8 +117,9 @@ class Arrivals:
         self.seen: object = None
 
     def note(self) -> None:
-        """Wake those who wait for the node, after something was put into a handle."""
-        # A new object each time, as threads would lose count: executors compare it with `seen`.
+        """Wake those who wait for the node, after an item was put into a handle."""
+        # A new object each time, because threads could lose a count: executors compare it with
+        # `seen`.
         self.last = object()
         for wakeup in tuple(self._signal._wakeups):
             wakeup.wake()
@@ -125,7 +128,7 @@ class Arrivals:
 class Destroyable:
     """A handle, like those of rclpy's extension module.
 
-    Inside ``with handle:`` it is not destroyed, however often that is asked for meanwhile; after
+    Within ``with handle:`` it is not destroyed, even if that is requested meanwhile; after
     `destroy_when_not_in_use`, ``with`` raises InvalidHandle.
 
     Attributes:
@@ -134,14 +137,15 @@ class Destroyable:
 
     def __init__(self, signal: Signal | None = None) -> None:
         self.signal = Signal() if signal is None else signal
-        # Changed without a lock, which a handler of a signal, or a finalizer that the garbage
-        # collector calls, would wait for if this thread had it.
+        # Changed without a lock: a signal handler, or a finalizer called by the garbage collector,
+        # would wait for the lock forever if this thread held it.
         self._uses: list[None] = []
-        self._is_ended = allocate_lock()  # acquired by who destroys it, once
+        self._is_ended = allocate_lock()  # acquired once, by the thread that destroys it
         self._unwanted = False
 
     def __enter__(self) -> Self:
-        self._uses.append(None)  # before the look: whoever destroys it looks in the other order
+        # before the check: the destroying thread checks in the opposite order
+        self._uses.append(None)
         if self._unwanted:
             self._leave()
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
@@ -174,14 +178,14 @@ class Destroyable:
         return not self._unwanted
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy it at the end of the last ``with``, or immediately; repeating has no effect."""
+        """Destroy it at the end of the last ``with``, or immediately; it may be called again."""
         if not self._unwanted:
             self._unwanted = True
             self._destroy_if_unused()
 
     def _destroy(self) -> None:
-        """Release what it holds."""
+        """Release its resources."""
 
     def ready(self) -> bool:
-        """Return whether something can be taken, or done, now."""
+        """Return whether an item can be taken, or work can be done, now."""
         return False

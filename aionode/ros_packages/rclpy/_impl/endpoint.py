@@ -1,4 +1,4 @@
-"""The common part of publishers, subscriptions, servers and clients: an endpoint of a bare node."""
+"""The common part of publishers, subscriptions, servers and clients: a bare node's endpoint."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
 
     Args:
         node: Its node.
-        name: Its topic or service, as the program gives it.
+        name: Its topic or service, as given by the program.
         qos_profile: Its profile.
         failure: The text of the error after shutdown.
         is_service: Whether the name is that of a service.
@@ -69,7 +69,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
         return self._node.logger_name()
 
     def _count_matched(self) -> int:
-        """Count the matched endpoints of the opposite kind."""
+        """Return the number of matched endpoints of the opposite kind."""
         return len(self.io.call(self.bare.matched))
 
     def _destroy(self) -> None:

@@ -20,13 +20,13 @@ class RCLError(RuntimeError):
 
 
 class InvalidHandle(RuntimeError):  # noqa: N818  # rclpy's name
-    """The entity, or what it belongs to, is destroyed."""
+    """The entity, or its owner, is destroyed."""
 
     __module__ = "rclpy._rclpy_pybind11"
 
 
 class NodeNameNonExistentError(RCLError):
-    """There is no node of this name."""
+    """There is no node with this name."""
 
     __module__ = "rclpy._rclpy_pybind11"
 
@@ -38,7 +38,7 @@ class UnsupportedEventTypeError(RCLError):
 
 
 class TimerCancelledError(RCLError):
-    """A timer was to be called that is cancelled."""
+    """A cancelled timer was to be called."""
 
     __module__ = "rclpy._rclpy_pybind11"
 

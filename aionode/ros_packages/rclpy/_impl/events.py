@@ -1,7 +1,7 @@
 """The events of publishers and subscriptions: matches, missed deadlines, lost messages.
 
-The statuses are counted in the thread of the context, which also keeps the time of deadlines and
-leases; executors take them as those of other waitables.
+The thread of the context counts the statuses and keeps the time of deadlines and leases; executors
+take them like items of other waitables.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class EventHandle(Destroyable):
         return self._watch.changed and not self._unwanted
 
     def take_event(self) -> Any:
-        """Return the status; its changes count from now on."""
+        """Return the status; its changes are counted anew from now on."""
         return self._io.call(self._watch.take)
 
     def _destroy(self) -> None:
@@ -92,7 +92,7 @@ class EventHandle(Destroyable):
 
 
 class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its text shows
-    """The kinds of policies, as events name them."""
+    """The kinds of policies named by events."""
 
     RMW_QOS_POLICY_INVALID = 1
     RMW_QOS_POLICY_DURABILITY = 2
@@ -110,10 +110,10 @@ class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its tex
 
 
 class Watch:
-    """Keeps the status of one kind of event; lives in the thread of the context.
+    """Keeps the status of one kind of event; used in the thread of the context.
 
     Attributes:
-        name: The kind of event, as the arguments of event callbacks call it.
+        name: The kind of event, as named by the arguments of event callbacks.
         empty: The status before anything has happened.
         aspects: The mismatches reported to its callback, or otherwise logged.
     """
@@ -125,27 +125,27 @@ class Watch:
     def __init__(
         self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
     ) -> None:
-        # Not the handle itself, which is garbage once its user has dropped it.
+        # Not the handle itself, which becomes garbage once its user has dropped it.
         self.feed = parent.feed
         self.assertions = parent.assertions
         self.graph = parent.io.context.graph
         self.time_base = parent.io.context.time_base
         self.endpoint = parent.endpoint
-        self.changed = False  # executors read it, to ask for the status in this thread
+        self.changed = False  # executors read it, to request the status in this thread
         self.status = self.empty
         self.ends: list[Callable[[], object]] = []
         self._notify = notify
 
     def start(self) -> None:
-        """Begin to watch, and add what ends that to `ends`."""
+        """Start to watch, and add the function that ends it to `ends`."""
 
     def stop(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         for end in self.ends:
             end()
 
     def tell(self, event: Any) -> None:
-        """Handle an event: the status has its counts; changes add up until they are taken."""
+        """Handle an event whose status has its own counts; changes add up until they are taken."""
         added = {
             name: getattr(self.status, name) + getattr(event, name) for name in changes_in(event)
         }
@@ -165,14 +165,14 @@ class Watch:
         return status
 
     def alarm(self, longest: Duration, on_silence: Callable[[int], bool]) -> SilenceAlarm:
-        """Return an alarm that runs: `on_silence` gets the periods that have passed."""
+        """Return a running alarm: `on_silence` gets the number of periods that have passed."""
         alarm = SilenceAlarm(self.time_base, longest.nanoseconds, on_silence)
         alarm.start()
         self.ends.append(alarm.stop)
         return alarm
 
     def listen(self, listeners: list[Any], listener: Callable[[Any], None]) -> None:
-        """Tell `listener` of messages or assertions."""
+        """Report messages or assertions to `listener`."""
         listeners.append(listener)
         self.ends.append(partial(listeners.remove, listener))
 
@@ -183,18 +183,18 @@ class Watch:
 
 
 def changes_in(status: Any) -> list[str]:
-    """Return the names of the fields of a status that hold changes."""
+    """Return the names of the status fields that hold changes."""
     return [field.name for field in fields(status) if field.name.endswith("_change")]
 
 
 class MatchedWatch(Watch):
-    """Counts the endpoints that are matched, or do not fit."""
+    """Counts the endpoints that match, or are incompatible."""
 
     name = "matched"
     empty = MatchedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start to watch."""
         if self.aspects:
             unreported = self.graph.unreported
             unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
@@ -234,7 +234,7 @@ class DeadlineWatch(Watch):
     empty: Any = QoSRequestedDeadlineMissedInfo(0, 0)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start to watch."""
         deadline = self.endpoint.qos.deadline
         if not is_unlimited(deadline):
             alarm = self.alarm(deadline, self._on_silence)
@@ -252,13 +252,13 @@ class OfferedDeadlineWatch(DeadlineWatch):
 
 
 class LivelinessLostWatch(Watch):
-    """Counts the leases that a publisher has let pass; asserting or publishing renews them."""
+    """Counts the leases that a publisher has let expire; asserting or publishing renews them."""
 
     name = "liveliness"
     empty = QoSLivelinessLostInfo(0, 0)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start to watch."""
         qos = self.endpoint.qos
         manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
         if manual and not is_unlimited(qos.liveliness_lease_duration):
@@ -268,17 +268,17 @@ class LivelinessLostWatch(Watch):
 
     def _on_lapse(self, periods: int) -> bool:
         self.count(1)
-        return False  # once, until the next sign
+        return False  # once, until the next sign of life
 
 
 class LivelinessChangedWatch(Watch):
-    """Counts the publishers that are alive, and those that let their lease pass."""
+    """Counts the publishers that are alive, and those whose lease has expired."""
 
     name = "liveliness"
     empty = QoSLivelinessChangedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start to watch."""
         liveliness = PublisherLiveliness(self.time_base, self.endpoint.qos, self.tell)
         liveliness.start()
         self.ends.append(liveliness.stop)
@@ -296,13 +296,13 @@ class LivelinessChangedWatch(Watch):
 
 
 class MessageLostWatch(Watch):
-    """Counts the gaps in what each publisher has numbered."""
+    """Counts the gaps in the sequence numbers of each publisher."""
 
     name = "message_lost"
     empty = QoSMessageLostInfo(0, 0)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start to watch."""
         last: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
 
         def note(sample_info: SampleInfo) -> None:
@@ -313,7 +313,7 @@ class MessageLostWatch(Watch):
         self.listen(self.feed, note)
 
 
-# In the order in which rclpy makes the handlers of one endpoint.
+# In the order in which rclpy creates the handlers of one endpoint.
 PUBLISHER_WATCHES: dict[IntEnum, type[Watch]] = {
     PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: OfferedDeadlineWatch,
     PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostWatch,

@@ -1,4 +1,4 @@
-"""Service introspection over handles: each end of a call publishes events, as in aionode."""
+"""Service introspection with handles: each end of a call publishes events, as in aionode."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["Introspection"]
 
 
 class EventPublisher(PublisherHandle):
-    """A publisher of service events, with the names that aionode's publishers have."""
+    """A publisher of service events, with the attribute names of aionode's publishers."""
 
     destroy = PublisherHandle.destroy_when_not_in_use
 
@@ -34,5 +34,5 @@ class Introspection(core.Introspection):
 
     def tell(self, event_type: int, client_gid: bytes, sequence: int, content: Any) -> None:
         """Publish one step of a call; its content is the request or the response."""
-        if self._publisher is not None:  # as for most, which need no `SampleInfo` either
+        if self._publisher is not None:  # as for most services, which need no `SampleInfo` either
             self.publish(event_type, SampleInfo(client_gid, sequence, 0), content)

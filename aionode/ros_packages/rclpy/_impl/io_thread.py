@@ -1,4 +1,4 @@
-"""The thread in which a context talks to others: one event loop, and no code of the user's."""
+"""The thread in which a context communicates: one event loop, and no user code."""
 
 from __future__ import annotations
 
@@ -27,18 +27,19 @@ T = TypeVar("T")
 ArgT = TypeVar("ArgT")
 
 MOST_WAITING = 1000
-"""Messages that may wait for the thread before `publish` waits for it."""
+"""Number of messages that may wait for the thread before `publish` blocks."""
 
 SLICE = 100
-"""Messages that the thread takes in one turn of its loop."""
+"""Number of messages that the thread takes in one loop iteration."""
 
 PRECISE_S = 0.002
-"""The end of a wait, in seconds, for which no descriptors are watched: that has whole
-milliseconds only.
-"""
+"""The end of a wait, in seconds, during which no descriptors are watched, since that has a
+resolution of milliseconds."""
 
 STOP_S = 5.0
-"""Time for which the end of the process waits for the thread: longer than all of its steps.
+"""How long the end of the process waits for the thread: longer than all of its steps.
+
+Inside Zenoh at the very end, it would abort the process.
 
 Inside Zenoh at the very end, it would abort the process.
 """
@@ -49,30 +50,31 @@ steady_ns = MachineTime().steady_ns
 
 
 class IoThread:
-    """Runs a context in an event loop of its own thread, from `start` to `stop`.
+    """Runs a context in the event loop of its own thread, from `start` to `stop`.
 
     Attributes:
-        context: The context; it and all that belongs to it are used in this thread only.
+        context: The context; it and everything that belongs to it are used in this thread only.
     """
 
     def __init__(self, context: Context) -> None:
         self.context = context
         self._work: deque[Callable[[], object]] = deque()
-        # Looks of the loop at the work, and the look after which it was last woken. Equal numbers:
-        # it will look again. The loop looks once it runs.
+        # The number of times that the loop has checked for work, and that number when it was last
+        # woken. If they are equal, it will check again. The loop checks once it runs.
         self._looks = 0
         self._woken_after = 0
-        # Set by the thread as it ends; from then on, each thread does the work that it posts.
+        # Set by the thread when it ends; from then on, each thread does the work that it posts.
         self._ended = False
         self._loop: LendableLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened = Wakeup()
         self._failure: BaseException | None = None  # to open the context
         self._inherited = False  # whether it belongs to the parent of this forked process
-        # Held while a message is delivered inside this context, in the thread that publishes it,
-        # and while subscriptions come and go. Nothing waits while it is held.
+        # Held while a message is delivered inside this context, in the publishing thread, and while
+        # subscriptions are added and removed. Nothing waits while it is held.
         self._delivery_lock = Lock()
-        # A daemon, as the interpreter waits for others before it calls what `atexit` has.
+        # A daemon, because the interpreter waits for other threads before it calls `atexit`
+        # functions.
         self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
 
     def start(self) -> None:
@@ -87,7 +89,7 @@ class IoThread:
             raise self._failure
 
     def stop(self) -> None:
-        """Close the context, once what was published is sent, and end the thread."""
+        """Close the context once everything published is sent, and end the thread."""
         if self._thread.is_alive() and not self.is_current:
             self.post(self._stop)
             self._thread.join(STOP_S)
@@ -98,13 +100,13 @@ class IoThread:
         return self._thread.ident == get_ident()
 
     def call(self, function: Callable[..., T], *args: Any) -> T:
-        """Call `function` in the thread and return its result.
+        """Call `function` in the thread, and return its result.
 
         Raises:
             InvalidHandle: the context is shut down.
             RCLError: a finalizer calls this where it cannot wait.
             ForkedProcessError: the context belongs to the parent of this forked process.
-            Exception: what the function raises.
+            Exception: raised by the function.
         """
         if self.is_current:
             return function(*args)
@@ -129,17 +131,18 @@ class IoThread:
         return results[0]
 
     def post(self, action: Callable[[], object]) -> None:
-        """Call `action` in the thread soon, after everything that was posted before.
+        """Call `action` in the thread soon, after everything posted before.
 
-        Any thread, handler of a signal or finalizer may call this at any time.
+        Any thread, signal handler or finalizer may call this at any time.
         """
         self._work.append(action)
         self._schedule()
 
     def send(self, action: Callable[[], object]) -> None:
-        """Call `action`, which sends something, after everything that was posted before.
+        """Call `action`, which sends something, after everything posted before.
 
-        In this thread and at once if the context's thread sleeps, and in the latter soon if not.
+        It is called at once in this thread if the context's thread sleeps, otherwise soon in the
+        context's thread.
 
         Raises:
             ForkedProcessError: the context belongs to the parent of this forked process.
@@ -166,13 +169,13 @@ class IoThread:
             loop.give_back()
 
     def deliver(self, work: Callable[[ArgT], Callable[[], object] | None], arg: ArgT) -> None:
-        """Call `work`, which delivers inside this context, and then, as `send` does, its result.
+        """Call `work`, which delivers inside this context, and then call its result like `send`.
 
-        One call is under way at a time. It is done when this returns; only for a finalizer that
-        has interrupted such a call it is done later.
+        Only one call is in progress at a time. It is complete when this returns; only for a
+        finalizer that has interrupted such a call it completes later.
 
         Raises:
-            Exception: what `work` raises.
+            Exception: raised by `work`.
         """
         if uninterrupted.begin():
             try:
@@ -188,7 +191,7 @@ class IoThread:
             self.call(self.deliver, work, arg)
 
     def change_delivery(self, change: Callable[[], T]) -> T:
-        """Call `change`, which changes who gets what is delivered; in the thread only.
+        """Call `change`, which adds or removes receivers of deliveries; in the thread only.
 
         Nothing is delivered inside this context meanwhile.
         """
@@ -201,7 +204,7 @@ class IoThread:
                 uninterrupted.end()
 
     def wait(self, wakeup: Wakeup, timeout_sec: float | None) -> bool:
-        """Wait for a wake-up, and meanwhile read what comes in, so that no other thread has to.
+        """Wait for a wake-up, and read incoming data meanwhile, so that no other thread has to.
 
         Args:
             wakeup: What is waited for.
@@ -235,7 +238,7 @@ class IoThread:
         return wakeup.wait(None if ends_ns is None else (ends_ns - steady_ns()) / 1e9)
 
     def pace(self) -> None:
-        """Wait while more is posted than the thread has done; for those who post much."""
+        """Wait while more is posted than the thread has done; for callers that post much."""
         if (
             len(self._work) >= MOST_WAITING
             and not self.is_current
@@ -255,8 +258,8 @@ class IoThread:
             except RuntimeError:  # the loop has just been closed
                 self._drain()
                 return
-            # Not before it is woken: a handler of a signal may interrupt this, post something
-            # itself and wait for it; or raise, so that the loop is never woken.
+            # Not before it is woken: a signal handler may interrupt this, post something itself and
+            # wait for it; or it may raise, in which case the loop would never be woken.
             self._woken_after = looks
 
     def _drain(self) -> None:
@@ -322,23 +325,23 @@ class IoThread:
             self._loop = loop
             self._stopping = asyncio.Event()
             self._opened.wake()
-            self._drain()  # a signal may have ended `start`, so that `stop` is here already
+            self._drain()  # a signal may have ended `start`, so `stop` may already be here
             await self._stopping.wait()
 
     # In the thread
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:
-        """Its event loop."""
+        """The event loop of the thread."""
         assert self._loop is not None  # noqa: S101  # `start` has returned
         return self._loop
 
 
 def read_until(wakeup: Wakeup, readers: Readers, ends_ns: float | None) -> bool:
-    """Read what comes in, in place of the loop, and return whether a wake-up has come.
+    """Read incoming data instead of the loop, and return whether a wake-up has come.
 
-    It ends without one shortly before the time has passed, when the loop is not to be had, and when
-    a signal is to be handled.
+    It ends without one shortly before the time has passed, when the loop cannot be borrowed, and
+    when a signal has to be handled.
     """
     while not uninterrupted.postponed:
         left_s = None if ends_ns is None else (ends_ns - steady_ns()) / 1e9

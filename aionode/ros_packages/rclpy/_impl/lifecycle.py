@@ -21,7 +21,7 @@ logger = get_logger("rcl_lifecycle")
 
 
 class LifecycleStateMachine:
-    """The state of one node, and the topic on which changes are published.
+    """The state of one node, and the topic on which its changes are published.
 
     Args:
         node: The node.
@@ -54,7 +54,7 @@ class LifecycleStateMachine:
         return state.state_id, state.label
 
     def _possible(self, transition: Transition | None, wanted: str | int) -> Transition:
-        """Return a transition that was found; without one warn as rcl does, and raise."""
+        """Return a transition if one was found; otherwise warn as rcl does, and raise."""
         if transition is None:
             state = self.machine.state
             logger.warning(f"No transition matching {wanted} found for current state {state.label}")
@@ -62,7 +62,7 @@ class LifecycleStateMachine:
         return transition
 
     def get_transition_by_label(self, label: str) -> int:
-        """Return the number of the transition of this name that is possible now.
+        """Return the number of the transition with this name that is possible now.
 
         Raises:
             RCLError: there is none.
@@ -91,6 +91,6 @@ class LifecycleStateMachine:
         self.trigger_transition_by_id(self.get_transition_by_label(label), publish)
 
     def destroy(self) -> None:
-        """Publish no more."""
+        """Stop publishing."""
         self.initialized = False
         self._events.destroy_when_not_in_use()

@@ -1,4 +1,4 @@
-"""The handle of a node: its names, its arguments, and what it sees of the graph."""
+"""The handle of a node: its names, its arguments, and its view of the graph."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ NOUNS = {
     EndpointKind.SERVER: "service",
     EndpointKind.CLIENT: "client",
 }
-"""rcl's word for the endpoints of a kind, in errors."""
+"""rcl's word for each kind of endpoint, in errors."""
 
 T = TypeVar("T")
 
@@ -44,7 +44,7 @@ system_ns = MachineTime().system_ns
 
 
 class NodeHandle(Destroyable):
-    """A node in the graph. `signal` is shared by the handles of its entities.
+    """A node in the graph. The handles of its entities share `signal`.
 
     Attributes:
         context_handle: Its context.
@@ -122,13 +122,13 @@ class NodeHandle(Destroyable):
         return names.resolve(name, self._name, self._namespace, rules, is_service=is_service)
 
     def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
-        """Return the parameters that arguments give, by name."""
+        """Return the parameters given by arguments, by name."""
         return {name: parameter_class(name, value=value) for name, value in self._overrides.items()}
 
     # Graph
 
     def ask(self, failure: str, question: Callable[[Graph], T]) -> T:
-        """Return what `question` answers; it is called in the thread of the context.
+        """Return the result of `question`, which is called in the thread of the context.
 
         Raises:
             InvalidHandle: the node is destroyed.
@@ -143,7 +143,7 @@ class NodeHandle(Destroyable):
         return self.ask("Failed to get node names", lambda graph: list(graph.nodes()))
 
     def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
-        """Return every topic or every service, with its types."""
+        """Return all topics or all services, with their types."""
         noun = "topic" if kinds is TOPIC_KINDS else "service"
         return self.ask(
             f"failed to get {noun} names and types", lambda graph: graph.names_and_types(*kinds)
@@ -152,10 +152,10 @@ class NodeHandle(Destroyable):
     def names_and_types_of(
         self, kind: EndpointKind, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        """Return the names that a node's endpoints of `kind` have, with their types.
+        """Return the names of a node's endpoints of `kind`, with their types.
 
         Raises:
-            NodeNameNonExistentError: there is no node of this name.
+            NodeNameNonExistentError: there is no node with this name.
             RCLError: the name or the namespace is invalid, or the context is shut down.
         """
         wanted = f"{NOUNS[kind]} names and types"
@@ -174,7 +174,7 @@ class NodeHandle(Destroyable):
                 ) from None
 
     def count(self, kind: EndpointKind, name: str) -> int:
-        """Count the endpoints of `kind` with a name, which is not remapped."""
+        """Count the endpoints of `kind` with a name, without remapping it."""
         with self:
             full_name = self._expected(name, only_expand=True, is_service=kind in SERVICE_KINDS)
             return self.ask(
@@ -198,7 +198,7 @@ class NodeHandle(Destroyable):
         """Return the full name of a topic or service.
 
         Raises:
-            ValueError: the name is invalid, in the words that rclpy has for questions.
+            ValueError: the name is invalid; the text is rclpy's for graph queries.
         """
         try:
             return self.resolve(name, only_expand=only_expand, is_service=is_service)

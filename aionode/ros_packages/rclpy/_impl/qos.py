@@ -1,4 +1,4 @@
-"""The form of a QoS profile that rclpy's extension module has."""
+"""The QoS profile of rclpy's extension module."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["profile_of", "rmw_qos_profile_t"]
 
 
 class rmw_qos_profile_t:  # noqa: N801  # rclpy's name
-    """A profile as `QoSProfile.get_c_qos_profile` returns it.
+    """A profile as returned by `QoSProfile.get_c_qos_profile`.
 
     Attributes:
-        profile: The profile that it stands for.
+        profile: The profile that it represents.
     """
 
     def __init__(self, profile: QoSProfile) -> None:
@@ -39,6 +39,6 @@ class rmw_qos_profile_t:  # noqa: N801  # rclpy's name
 
 
 def profile_of(given: Any) -> QoSProfile:
-    """Return the profile that is given in either form."""
+    """Return the profile given in either form."""
     profile: QoSProfile = given.profile if isinstance(given, rmw_qos_profile_t) else given
     return profile

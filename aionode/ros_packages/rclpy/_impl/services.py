@@ -72,7 +72,7 @@ class Requests:
         self._arrivals = arrivals
 
     def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
-        """Accept a request; the oldest one makes room, and its client is told."""
+        """Accept a request; if too many wait, drop the oldest and notify its client."""
         while self.items and (len(self.items) >= self._limit or self._is_heavy(request)):
             if len(self.items) < self._limit and self._on_heavy is not None:
                 on_heavy, self._on_heavy = self._on_heavy, None
@@ -116,9 +116,9 @@ class CallHandle(EndpointHandle[BareT]):
         """Publish events of calls on ``<service>/_service_event``.
 
         Args:
-            clock: The clock that shows the stamps of events.
+            clock: The clock for the stamps of events.
             service_event_qos_profile: The profile of that topic.
-            introspection_state: Whether events are published, and whether with their contents.
+            introspection_state: Whether events are published, and whether with contents.
         """
         self._introspection.configure(clock, service_event_qos_profile, introspection_state)
 
@@ -129,7 +129,7 @@ class CallHandle(EndpointHandle[BareT]):
 
 
 MOST_TAKEN = 10_000
-"""Requests that may wait for a late answer; of more, the oldest gets none."""
+"""Number of requests that may wait for a late answer; beyond that, the oldest gets none."""
 
 
 class ServiceHandle(CallHandle[BareEndpoint]):
@@ -145,7 +145,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             node.requests,
             partial(logger.warning, text),
         )
-        # Threads that spin add and pop requests, each in one step.
+        # Threads that spin add and pop requests, each in one atomic step.
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
@@ -156,7 +156,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
     def service_take_request(
         self, request_type: Any
     ) -> tuple[Any, rmw_service_info_t] | tuple[None, None]:
-        """Return the oldest request that waits and its header, or two times None."""
+        """Return the oldest waiting request and its header, or None twice."""
         del request_type
         while True:
             try:
@@ -181,7 +181,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
 
     def service_send_response(self, response: Any, request_id: rmw_request_id_t) -> None:
-        """Answer the request of this id; a second answer is dropped."""
+        """Answer the request with this id; a second answer is dropped."""
         data = self._support.response.encode(response)
         request = self._taken.pop(request_id, None)
         if request is None:
@@ -192,7 +192,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
         )
 
     def service_send_error(self, error_type: str, text: str, request_id: rmw_request_id_t) -> None:
-        """Send an error instead of a response; only aionode clients are told."""
+        """Send an error instead of a response; only aionode clients get it."""
         request = self._taken.pop(request_id, None)
         if request is not None:
             self.io.send(partial(request.fail, error_type, text))
@@ -200,7 +200,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
     def give_up(self, request_id: rmw_request_id_t) -> None:
         """Leave a request without an answer; its client keeps waiting.
 
-        As in rclpy, whose clients are not told that a callback has failed.
+        As in rclpy, whose clients do not learn that a callback has failed.
         """
         self._taken.pop(request_id, None)
 
@@ -210,13 +210,14 @@ class Replies:
 
     def __init__(self, arrivals: Arrivals) -> None:
         self.items: deque[tuple[int, Any, int]] = deque()
-        # Threads that call add an entry before they send, and pop it to give up; the thread of the
-        # context pops the entry of a reply. Each is one step, so that one of them gets the entry.
+        # Calling threads add an entry before they send, and pop it to give up; the thread of the
+        # context pops the entry of a reply. Each is one atomic step, so only one of them gets the
+        # entry.
         self.blocked: dict[int, Callable[[Any], None]] = {}
         self._arrivals = arrivals
 
     def take(self, sequence: int, response: Any) -> None:
-        """Handle a response; a thread that waits for it gets it immediately."""
+        """Handle a response; a thread waiting for it gets it immediately."""
         waiting = self.blocked.pop(sequence, None)
         if waiting is not None:
             waiting(response.data)
@@ -244,8 +245,8 @@ class ClientHandle(CallHandle[BareClient]):
 
         Args:
             request: The request.
-            on_response: Called in the thread of the context with the response as bytes, which then
-                does not wait to be taken: for a thread that waits for it.
+            on_response: Called in the thread of the context with the bytes of the response, which
+                then need not be taken: for a thread that waits for it.
         """
         data = self._support.request.encode(request)
         self._sequence += 1
@@ -264,7 +265,7 @@ class ClientHandle(CallHandle[BareClient]):
             replies.take(sequence, response)
 
         def fail(error: ServiceError | None) -> None:
-            # rclpy's clients wait for ever: no error reaches them.
+            # rclpy's clients wait forever: no error reaches them.
             calls.pop(sequence, None)
             if error is not None:
                 logger.warning("%s: %s", self.name, error)
@@ -275,10 +276,10 @@ class ClientHandle(CallHandle[BareClient]):
                 calls[sequence] = call
 
     def receive(self, sequence: int, data: bytes) -> Any:
-        """Return a response that came as bytes.
+        """Decode a response received as bytes.
 
         Raises:
-            DecodeError: the bytes are no response.
+            DecodeError: the bytes are not a response.
         """
         response = self._support.response.decode(data)
         self._introspection.tell(RESPONSE_RECEIVED, self.endpoint.gid, sequence, response)
@@ -298,7 +299,7 @@ class ClientHandle(CallHandle[BareClient]):
     def take_response(
         self, response_type: Any
     ) -> tuple[rmw_service_info_t, Any] | tuple[None, None]:
-        """Return the header of the oldest response that waits, and the response, or two None."""
+        """Return the header of the oldest waiting response, and the response, or None twice."""
         del response_type
         while True:
             try:

@@ -1,4 +1,4 @@
-"""Handles of clocks, timers and guard conditions, which nothing outside the process reaches."""
+"""Handles of clocks, timers and guard conditions, which are local to the process."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ ANY_JUMP = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Durat
 
 
 class ClockHandle(Destroyable, Clock):
-    """A clock: aionode's, as a handle."""
+    """A clock: aionode's clock as a handle."""
 
     def __new__(cls, *_: Any, **__: Any) -> Self:
-        """Create a clock of this class for each type of time; `Clock` has one for ROS time."""
+        """Create a clock of this class for each clock type; `Clock` has one for ROS time."""
         return object.__new__(cls)
 
     def __init__(self, clock_type: int) -> None:
@@ -30,7 +30,7 @@ class ClockHandle(Destroyable, Clock):
 
 
 class GuardConditionHandle(Destroyable):
-    """A condition that any thread triggers; whoever takes it resets it."""
+    """A condition that any thread triggers, and that is reset when taken."""
 
     def __init__(self, context: ContextHandle) -> None:
         super().__init__()
@@ -38,7 +38,7 @@ class GuardConditionHandle(Destroyable):
         self._triggered = False  # set by any thread, reset by the one that takes it
 
     def trigger_guard_condition(self) -> None:
-        """Trigger it; any thread may."""
+        """Trigger it; any thread may do that."""
         self._triggered = True
         self.signal.notify()
 
@@ -53,7 +53,7 @@ class GuardConditionHandle(Destroyable):
 
 
 class TimerHandle(Destroyable, ClockedSchedule):
-    """When a timer is due next, by the rules of rcl."""
+    """The due times of a timer, by the rules of rcl."""
 
     def __init__(
         self,
@@ -78,13 +78,13 @@ class TimerHandle(Destroyable, ClockedSchedule):
         self.signal.notify()
 
     def _switch(self, old_now_ns: int, new_now_ns: int) -> None:
-        """Keep what was left of the period; before the first ROS time there is nothing to keep."""
+        """Keep the rest of the period; before the first ROS time there is nothing to keep."""
         if old_now_ns and new_now_ns:
             super()._switch(old_now_ns, new_now_ns)
 
     @property
     def waits_for_jump(self) -> bool:
-        """Whether its clock is set by hand: time passes only when it is set."""
+        """Whether its clock is set externally: then time passes only when it is set."""
         return self.clock.ros_time_is_active
 
     def ready(self) -> bool:
@@ -94,7 +94,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
     is_timer_ready = ready
 
     def due_in_ns(self) -> int | None:
-        """Return how long it is until the call, in real time; None if that is not known."""
+        """Return the time until the call, in real time; None if that is unknown."""
         if self._unwanted or self.waits_for_jump:
             return None
         return self.time_until_next_call()
@@ -117,7 +117,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         self.call_timer_with_info()
 
     def cancel_timer(self) -> None:
-        """Call no more, until it is reset."""
+        """Stop calling until it is reset."""
         self.schedule.cancel()
 
     def is_timer_canceled(self) -> bool:
@@ -125,7 +125,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         return self.schedule.canceled
 
     def reset_timer(self) -> None:
-        """Begin a new period now, also if it was cancelled."""
+        """Start a new period now, even if it was cancelled."""
         self.schedule.reset(self.clock.now_ns())
         self.wake()
 

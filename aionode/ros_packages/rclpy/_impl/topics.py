@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 __all__ = ["PublisherHandle", "SubscriptionHandle"]
 
 Feed = list["Callable[[SampleInfo | None], None]"]
-"""Functions that are told of each message in the thread of the context, to watch for events."""
+"""Functions called with each message in the thread of the context, to watch for events."""
 
 Sample = tuple[Any, SampleInfo, int, int]
-"""A message, where it comes from, when it arrived, and its number among those that were taken."""
+"""A message, its origin, its arrival time, and its number among the taken ones."""
 
 UNWEIGHED = 2
-"""So many messages wait before their bytes count."""
+"""Number of messages that may wait whatever their size in bytes."""
 
 logger = logging.getLogger("aionode.rclpy")
 
@@ -47,7 +47,7 @@ now_ns = MachineTime().system_ns
 
 
 class PublisherHandle(EndpointHandle[BarePublisher]):
-    """A publisher. `publish` encodes, and delivers to this context, in the calling thread."""
+    """A publisher. `publish` encodes, and delivers within this context, in the calling thread."""
 
     def __init__(self, node: NodeHandle, msg_type: Any, topic: str, qos_profile: Any) -> None:
         super().__init__(node, topic, qos_profile, "Failed to create publisher", is_service=False)
@@ -67,12 +67,12 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         self.publish_raw(data)
 
     def publish_raw(self, data: bytes) -> None:
-        """Send a message that is encoded already.
+        """Send an encoded message.
 
         Subscriptions of this context have it when this returns.
 
         Raises:
-            RCLError: the context is shut down, or a KEEP_ALL subscription of it is full.
+            RCLError: the context is shut down, or one of its KEEP_ALL subscriptions is full.
             ForkedProcessError: the context belongs to the parent of this forked process.
         """
         if self._node.context_handle.is_shut_down:
@@ -84,7 +84,7 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
             io.post(self._tell_feed)
 
     def _publish_here(self, msg: Any) -> Callable[[], object] | None:
-        """Deliver a message inside this context; return what sends it to others."""
+        """Deliver a message within this context; return the function that sends it to others."""
         try:
             sample_info = self.bare.publish_here(msg, now_ns())
         except QueueFullError as error:
@@ -94,7 +94,7 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         return partial(self.bare.publish_elsewhere, msg, sample_info)
 
     def refuse_after_shutdown(self, failure: str) -> None:
-        """Raise after shutdown, whoever has done that.
+        """Raise after shutdown, whatever caused it.
 
         Raises:
             RCLError: the context is shut down.
@@ -128,7 +128,7 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         self.bare.assert_liveliness()
 
     def wait_for_all_acked(self, timeout: Any) -> bool:
-        """Wait until everything is handed to the transports; they repeat what is lost.
+        """Wait until everything is passed to the transports, which resend lost messages.
 
         Raises:
             RCLError: the context is shut down.
@@ -142,9 +142,9 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
 class Inbox:
     """The queue of a subscription, its `Reader`.
 
-    The thread of the context fills it, and threads that publish in the same context.
+    The thread of the context fills it, as do threads that publish in the same context.
 
-    It does not know its handle, which is garbage once its user has dropped it.
+    It does not know its handle, which becomes garbage once its user has dropped it.
     """
 
     raw = False
@@ -161,14 +161,14 @@ class Inbox:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
-        # Threads append and take in one step; `arrivals` wakes a thread that has found it empty.
+        # Threads append and take in one atomic step; `arrivals` wakes a thread that found it empty.
         self.items: deque[tuple[Any, SampleInfo, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
         self._limit_bytes = limit_bytes
         self._on_heavy: Callable[[], None] | None = on_heavy  # called once
-        # Of the messages that wait, or did while others have waited. Threads that deliver at the
-        # same time overwrite each other's number: then a message too many may wait.
+        # The bytes of messages that wait, or waited while others did. Threads that deliver
+        # concurrently may overwrite each other's number: then a message too many may wait.
         self._largest_bytes = 0
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
@@ -209,10 +209,10 @@ class Inbox:
             listener(gid)
 
     def _is_heavy(self, size_bytes: int) -> bool:
-        """Return whether one more of this size exceeds the limit in bytes."""
+        """Return whether one more message of this size exceeds the limit in bytes."""
         self._largest_bytes = max(self._largest_bytes, size_bytes)
         if (len(self.items) + 1) * self._largest_bytes <= self._limit_bytes:
-            return False  # nothing has to be added up, as nearly always
+            return False  # nothing to add up, as nearly always
         waiting = self.items.copy()  # other threads take from it
         return sum(len(data) for data, _, _ in waiting) + size_bytes > self._limit_bytes
 
@@ -233,10 +233,10 @@ class Inbox:
             listener(sample_info)
 
     def reject(self, error: DecodeError) -> None:
-        """Leave out a sample that is no message of this type; the transport has logged it."""
+        """Ignore a sample that is not a message of this type; the transport has logged it."""
 
     def has_room(self) -> bool:
-        """Whether a message can be taken without losing one that should be kept."""
+        """Whether a message can be accepted without losing one that should be kept."""
         return not self.keep_all or (
             len(self.items) < self.limit and (len(self.items) < UNWEIGHED or not self._is_heavy(0))
         )
@@ -247,7 +247,7 @@ class Inbox:
         return len(self.items)
 
     async def wait_for_room(self) -> None:
-        """Return at once: publishers of this context drop what does not fit."""
+        """Return at once: publishers of this context drop messages for which there is no room."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
         """Call `callback` once there is room; in the thread of the context only."""
@@ -256,14 +256,14 @@ class Inbox:
             self._post(self.tell_of_room)
 
     def tell_of_room(self) -> None:
-        """Call what waits for room, once; in the thread of the context only."""
+        """Call those who wait for room, once; in the thread of the context only."""
         waiters, self.room_waiters = self.room_waiters, []
         for waiter in waiters:
             waiter()
 
 
 class SubscriptionHandle(EndpointHandle[BareEndpoint]):
-    """A subscription: messages wait in it until one is taken, the newest `depth` of them."""
+    """A subscription: messages wait in it until taken, the newest `depth` of them."""
 
     def __init__(
         self,
@@ -290,7 +290,8 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
                 content_filter_options.expression_parameters,
             )
         # Used by the threads that take, one at a time unless the callback group is reentrant. With
-        # several, two messages may get the same number, or a publisher be looked up twice.
+        # several threads, two messages may get the same number, or a publisher may be looked up
+        # twice.
         self._lifespans: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         self._received = 0
         self._announce(node.bare.create_subscription, self._support.wire_type, self.inbox)
@@ -300,12 +301,12 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         return bool(self.inbox.items) and not self._unwanted
 
     def take_message(self, msg_type: Any, raw: bool) -> tuple[Any, dict[str, Any]] | None:
-        """Return the oldest message that waits and where it comes from, or None."""
+        """Return the oldest waiting message and its origin, or None."""
         taken = self.take_sample(msg_type, raw)
         return None if taken is None else (taken[0], self.info_of(taken))
 
     def take_sample(self, msg_type: Any, raw: bool) -> Sample | None:
-        """Return the oldest message that waits, for `info_of`, or None."""
+        """Return the oldest waiting message, for `info_of`, or None."""
         inbox = self.inbox
         while inbox.items:
             try:
@@ -332,7 +333,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         return None
 
     def info_of(self, taken: Sample) -> dict[str, Any]:
-        """Return where a message comes from, as rclpy's callbacks get it."""
+        """Return the origin of a message, as rclpy's callbacks get it."""
         _, sample_info, arrived_ns, received = taken
         return {
             "source_timestamp": sample_info.source_ns,
@@ -351,7 +352,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         )
 
     def _has_expired(self, sample_info: SampleInfo, arrived_ns: int) -> bool:
-        """Whether the lifespan that the publisher gave its messages has passed."""
+        """Return whether the lifespan that the publisher gave its messages has passed."""
         lifespan_ns = self._lifespans.get(sample_info.gid)
         if lifespan_ns is None:
             lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
@@ -377,7 +378,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         return self.inbox.accept is not None
 
     def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
-        """Take only messages that meet the expression; an empty one takes all.
+        """Receive only messages that match the expression; an empty one accepts all.
 
         Raises:
             RCLError: the expression cannot be used.

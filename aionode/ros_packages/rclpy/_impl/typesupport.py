@@ -57,12 +57,12 @@ class ServiceSupport(NamedTuple):
 
 
 def is_own(cls: Any) -> bool:
-    """Whether a class is one of aionode's."""
+    """Return whether a class is one of aionode's."""
     return isinstance(cls, type) and issubclass(cls, Message | ServiceType | ActionType)
 
 
 def message_like(cls: Any, name: str) -> Any:
-    """Return the message class with a ROS name that is of the same family as `cls`."""
+    """Return the message class with a ROS name in the same family as `cls`."""
     like = message_class(name)
     return aionode_class(like) if is_own(cls) else like
 
@@ -85,7 +85,7 @@ def service_support(cls: Any) -> ServiceSupport:
 
 
 def type_of(message: object) -> str:
-    """Return the ROS name of a message's type; the name of the class of any other object."""
+    """Return the ROS name of a message's type; for other objects, the name of their class."""
     try:
         return ros_type_name(type(message))
     except TypeError:

@@ -1,20 +1,20 @@
 """Work of a context's thread that other threads do, and that nothing may interrupt.
 
-A handler of a signal runs in the main thread, between any two bytecodes. It may use the objects
-that the thread is just using, and it may raise, so that the work it has interrupted stays half
-done. Finalizers, which the garbage collector calls in any thread, never raise, but use objects too.
+A signal handler runs in the main thread, between any two bytecodes. It may use the objects that the
+thread is just using, and it may raise, so that the interrupted work stays half done. Finalizers,
+which the garbage collector calls in any thread, never raise, but use objects as well.
 
-So three rules hold. The main thread does such work only while the program has installed no handler
-in Python; else the context's own thread does it. rclpy's own handler puts itself off until the end
-of the work. And within the work nothing waits: a finalizer that publishes leaves its message to the
-context's thread, and one that asks gets an error.
+Hence three rules. The main thread does such work only while the program has installed no signal
+handler in Python; otherwise the context's own thread does it. rclpy's own handler postpones itself
+until the end of the work. And nothing waits within the work: a finalizer that publishes leaves its
+message to the context's thread, and one that waits for an answer gets an error.
 """
 
 from __future__ import annotations
 
 import signal
 
-# `signal.getsignal` makes an enum of each answer, which takes ten times as long.
+# `signal.getsignal` creates an enum for each answer, which takes ten times as long.
 from _signal import getsignal  # type: ignore[import-not-found]  # it has no stub
 from threading import current_thread, get_ident, local, main_thread
 from typing import TYPE_CHECKING, Any
@@ -32,12 +32,12 @@ NUMBERS = sorted(int(number) for number in signal.valid_signals() if number not 
 
 
 class Uninterrupted(local):
-    """Such work of this thread.
+    """The state of such work in this thread.
 
     Attributes:
-        active: Whether it does any, or looks whether it may.
+        active: Whether it does any, or checks whether it may.
         begun: Whether it does any.
-        rouse: Ends the wait that is part of it, if one is.
+        rouse: Ends the wait within the work, if there is one.
     """
 
     active = False
@@ -55,14 +55,14 @@ postponed: list[Callable[[], object]] = []
 
 
 class Handlers:
-    """The handlers that were installed at the last look, and whether all are harmless."""
+    """The installed handlers at the last check, and whether all of them are harmless."""
 
     seen: list[Any] | None = None
     harmless = False
 
 
 def begin() -> bool:
-    """Begin work that nothing may interrupt; then `end` has to follow.
+    """Begin work that nothing may interrupt; `end` has to follow.
 
     Returns:
         Whether it may be done in this thread: not in a finalizer that interrupts such work, and not
@@ -70,14 +70,14 @@ def begin() -> bool:
     """
     if current.active:
         return False
-    # Before the look: rclpy's handler puts itself off from here on, and with it the program's code
-    # that it calls and that might install another one.
+    # Before the check: from here on rclpy's handler postpones itself, and with it the program's
+    # code that it calls and that might install another handler.
     current.active = True
     alone = False
     try:
         alone = get_ident() != main_thread().ident or handlers_are_harmless()
     finally:
-        # A handler of the program that interrupts the look may wait: the work does not begin then.
+        # A handler of the program that interrupts the check may wait: the work does not begin then.
         current.begun = alone
         if not alone:
             current.active = False
@@ -87,7 +87,7 @@ def begin() -> bool:
 
 
 def end() -> None:
-    """End it, and call what was put off meanwhile."""
+    """End the work, and call what was postponed meanwhile."""
     current.rouse = None
     current.begun = current.active = False
     if postponed:
@@ -95,7 +95,7 @@ def end() -> None:
 
 
 def handlers_are_harmless() -> bool:
-    """Return whether no handler in Python is installed but those that call `postpone`."""
+    """Return whether all installed Python handlers are ones that call `postpone`."""
     installed = [*map(getsignal, NUMBERS)]
     if installed != Handlers.seen:
         Handlers.harmless = all(
@@ -106,7 +106,7 @@ def handlers_are_harmless() -> bool:
 
 
 def postpone(action: Callable[[], object]) -> bool:
-    """Postpone `action` if this thread does such work, and call it soon after.
+    """Postpone `action` until soon after this thread's uninterrupted work, if it does any.
 
     Returns:
         Whether it will be called.
@@ -120,19 +120,19 @@ def postpone(action: Callable[[], object]) -> bool:
 
 
 def call_postponed() -> None:
-    """Call what `postpone` has kept, in the thread that handles signals."""
+    """Call the postponed actions, in the thread that handles signals."""
     while postponed and current_thread() is main_thread():
         postponed.pop(0)()
 
 
 def refuse_to_wait() -> None:
-    """Raise within such work, whose end the wait would wait for.
+    """Raise within such work, for whose end the wait would wait.
 
     Raises:
-        RCLError: it is under way in this thread: a finalizer has interrupted it.
+        RCLError: it is in progress in this thread: a finalizer has interrupted it.
     """
     if current.begun:
         raise RCLError(
             "a finalizer interrupted a thread that sends or receives, and cannot wait for an "
-            "answer; publish there, or ask later, in a callback"
+            "answer; publish there, or wait later, in a callback"
         )

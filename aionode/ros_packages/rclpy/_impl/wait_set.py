@@ -60,7 +60,7 @@ class WaitSet(Destroyable):
     add_event = partialmethod(_add, "event")
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Return whether the handle of this index was ready when the last wait ended."""
+        """Return whether the handle with this index was ready when the last wait ended."""
         return self._handles[kind][index] in self._ready[kind]
 
     def get_ready_entities(self, kind: str) -> list[int]:
@@ -72,7 +72,7 @@ class WaitSet(Destroyable):
         return any(handle.ready() for handles in self._handles.values() for handle in handles)
 
     def look(self) -> bool:
-        """Note which handles are ready now, and return whether any is."""
+        """Record which handles are ready now, and return whether any is."""
         for kind, handles in self._handles.items():
             self._ready[kind] = [handle for handle in handles if handle.ready()]
         for guard_condition in self._ready["guard_condition"]:
@@ -92,7 +92,7 @@ class WaitSet(Destroyable):
                 handle.signal.remove(wakeup)
 
     def due_in_ns(self) -> int | None:
-        """Return how long it is until the next timer, or None."""
+        """Return the time until the next timer, or None."""
         waits_ns = [timer.due_in_ns() for timer in self._handles["timer"]]
         return min((wait_ns for wait_ns in waits_ns if wait_ns is not None), default=None)
 

@@ -1,4 +1,4 @@
-"""The base of clients and servers of actions."""
+"""The base class of action clients and servers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ HandleT = TypeVar("HandleT", ActionClientHandle, ActionServerHandle)
 
 
 class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
-    """A waitable of a node, whose handle stands for several services and topics."""
+    """A waitable of a node, whose handle represents several services and topics."""
 
     _ActionEntity__handle: HandleT
     _node: Node
@@ -41,7 +41,7 @@ class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Publish events of calls of its three services on ``…/_service_event``."""
+        """Publish events for calls of its three services on ``…/_service_event``."""
         with self._ActionEntity__handle as handle:
             handle.configure_introspection(clock, service_event_qos_profile, introspection_state)
 

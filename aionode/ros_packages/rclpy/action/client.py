@@ -77,7 +77,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def stamp(self) -> Any:
-        """When it was accepted."""
+        """The time of its acceptance."""
         return self._goal_response.stamp
 
     @property
@@ -88,7 +88,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def status(self) -> int:
-        """Its state, as the server has published it last."""
+        """Its state in the server's latest status message."""
         return self._status
 
     def cancel_goal(self) -> Any:
@@ -96,7 +96,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return blocked(self.cancel_goal_async())
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Ask the server to cancel it; return a future of the answer."""
+        """Ask the server to cancel it; return a future for the answer."""
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
@@ -104,7 +104,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return blocked(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
-        """Ask for its result; return a future of it."""
+        """Request its result; return a future for it."""
         return self._action_client._get_result_async(self)
 
 
@@ -123,11 +123,11 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         node: Its node.
         action_type: The action class.
         action_name: Its name.
-        callback_group: The group in which answers are handled and feedback callbacks called.
+        callback_group: The group in which answers are handled and feedback callbacks are called.
         goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
             feedback_sub_qos_profile, status_sub_qos_profile: QoS of its services and topics.
-        enable_feedback_msg_optimization: Of rclpy in Lyrical, and without effect: feedback of the
-            goals of others is dropped as it comes.
+        enable_feedback_msg_optimization: An option of rclpy in Lyrical, without effect: feedback of
+            other clients' goals is dropped on arrival.
     """
 
     def __init__(
@@ -161,12 +161,12 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
                 status_sub_qos_profile,
             )
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[Any, Any, Any]]] = {}
-        # Of each service: future and request, by the number of the request.
+        # For each service: future and request, by the number of the request.
         self._ActionClient__pending: dict[str, dict[int, tuple[Future[Any], Any]]] = {
             name: {} for name in SERVICES
         }
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
-        # The states that were published last: they may be here before the response of a goal.
+        # The states published last: they may arrive before the response to a goal.
         self._ActionClient__states: list[Any] = []
         self._lock = threading.RLock()
         self._logger = node.get_logger().get_child("action_client")
@@ -189,7 +189,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         feedback_callback: Callable[[Any], Any] | None = None,
         goal_uuid: Any | None = None,
     ) -> Future[Any]:
-        """Send a goal; return a future of its `ClientGoalHandle`, accepted or not.
+        """Send a goal; return a future for its `ClientGoalHandle`, accepted or not.
 
         Args:
             goal: The goal.
@@ -244,7 +244,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         future.add_done_callback(forget)
         return future
 
-    # For executors to call
+    # Called by executors
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether an answer, feedback or status has arrived."""
@@ -266,7 +266,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
-        """Complete futures, call feedback callbacks, and note states."""
+        """Complete futures, call feedback callbacks, and record states."""
         for name in SERVICES:
             if name in taken_data:
                 self._ActionClient__take_response(name, *taken_data[name])
@@ -296,7 +296,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         )
 
     def _ActionClient__goal(self, request: Any, response: Any) -> ClientGoalHandle[Any, Any, Any]:
-        """Return the goal of a request, which is followed if the server has accepted it."""
+        """Return the goal of a request, which is tracked if the server has accepted it."""
         handle = ClientGoalHandle(self, request.goal_id, response)
         goal_id = bytes(handle.goal_id.uuid)
         if not handle.accepted:
@@ -321,7 +321,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             del self._goal_handles[goal_id]
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of handles it adds to a wait set."""
+        """Return the number of handles that it adds to a wait set."""
         return NumberOfEntities(num_subs=2, num_clients=3)
 
     # The server

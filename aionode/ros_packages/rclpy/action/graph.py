@@ -21,7 +21,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the actions that a node is a client of.
+    """Return the actions of which a node is a client.
 
     Raises:
         NodeNameNonExistentError: there is no such node.

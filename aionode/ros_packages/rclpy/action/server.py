@@ -58,7 +58,7 @@ FEEDBACK_QOS = QoSProfile(depth=10)
 
 
 class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
-    """A goal that was accepted."""
+    """An accepted goal."""
 
     def __init__(
         self,
@@ -99,7 +99,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether it is to be cancelled."""
+        """Whether its cancellation was requested."""
         return self.status == GoalStatus.CANCELING
 
     @property
@@ -125,7 +125,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
         """Schedule the execute callback with the executor; by default the server's own callback."""
-        if not self.is_cancel_requested:  # else the callback itself finds out
+        if not self.is_cancel_requested:  # otherwise the callback itself finds out
             self._update_state(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
 
@@ -146,33 +146,33 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
                 self._action_server._handle.feedback.publish(message)
 
     def executing(self) -> None:
-        """Say that it is being executed, where no execute callback says so: of newer rclpy."""
+        """Mark it as executing, if no execute callback does; of newer rclpy."""
         self._update_state(GoalEvent.EXECUTE)
 
     def succeed(self, response: Any = None) -> None:
-        """End it with success; newer rclpy may give the result here."""
+        """End it successfully; newer rclpy may pass the result here."""
         self._end(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """End it without success; newer rclpy may give the result here."""
+        """Abort it; newer rclpy may pass the result here."""
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """End it as cancelled; newer rclpy may give the result here."""
+        """End it as canceled; newer rclpy may pass the result here."""
         self._end(GoalEvent.CANCELED, response)
 
     def _end(self, event: GoalEvent, response: Any) -> None:
         expected = self._action_server.action_type.Result
         if response is not None and not isinstance(response, expected):
             raise TypeError(
-                f"the result of a goal is a {type(response).__name__}; give a Result of its action"
+                f"the result of a goal is a {type(response).__name__}; use a Result of its action"
             )
         self._update_state(event)
         if response is not None:
             self._set_result(response)
 
     def _set_result(self, result: Any) -> None:
-        """Answer those who wait for the result; the first one counts."""
+        """Answer those who wait for the result; the first result counts."""
         if self._result.done():
             return
         response = self._action_server.action_type.Impl.GetResultService.Response()
@@ -181,7 +181,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._result.set_result(response)
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Forget the goal."""
         with self._lock:
             self._is_destroyed = True
 
@@ -200,7 +200,7 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:
 
 
 def default_cancel_callback(cancel_request: Any) -> CancelResponse:
-    """Reject each request to cancel."""
+    """Reject each cancel request."""
     return CancelResponse.REJECT
 
 
@@ -212,16 +212,16 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         action_type: The action class.
         action_name: Its name.
         execute_callback: Called with each goal's handle, as a task of the executor; returns the
-            result. A goal that it does not end is aborted.
+            result. If it does not end the goal, the goal is aborted.
         callback_group: The group of the other callbacks.
-        goal_callback: Says whether a goal is accepted.
+        goal_callback: Decides whether a goal is accepted.
         handle_accepted_callback: Called with each accepted goal; by default executes it.
-        cancel_callback: Says whether a goal may be cancelled; by default it may not.
+        cancel_callback: Decides whether a goal may be cancelled; by default it may not.
         goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
             feedback_pub_qos_profile, status_pub_qos_profile: QoS of its services and topics.
         result_timeout: How long to keep results, in seconds; negative for no limit.
-        max_goals: How many goals may be active at once; those beyond are rejected before
-            `goal_callback` is asked. So many results are kept, too. rclpy has no such argument.
+        max_goals: How many goals may be active at once; more are rejected before `goal_callback` is
+            called. As many results are kept. rclpy has no such argument.
     """
 
     def __init__(
@@ -375,7 +375,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
 
     def _execute_get_result_request(self, header: Any, request: Any) -> None:
         goal_id = bytes(request.goal_id.uuid)
-        asked_id = reason_id(goal_id)  # if a client of aionode asks why
+        asked_id = reason_id(goal_id)  # for clients of aionode that want to know the reason
         aborted = self._goal_handles.get(asked_id)
         rejection = self._ActionServer__rejections.get(asked_id)
         if reason := rejection if aborted is None else aborted._reason:
@@ -401,10 +401,10 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             forgotten = self._handle.expiry.take()
         for goal_handle in forgotten:
             goal_handle.destroy()
-            with suppress(ValueError):  # the server was destroyed, which removes all
+            with suppress(ValueError):  # the server was destroyed, which removes all goals
                 self.remove_future(goal_handle._result)
 
-    # For executors to call
+    # Called by executors
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether a request has arrived, or a goal must be forgotten."""
@@ -438,11 +438,11 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 header, request = taken_data[name]
                 try:
                     await answer(header, request)
-                finally:  # a callback of the user's may have failed
+                finally:  # a user's callback may have failed
                     service.give_up(header.request_id)
         if "result" in taken_data:
             self._execute_get_result_request(*taken_data["result"])
-        self._ActionServer__expire_goals()  # last: a result may have been asked for just before
+        self._ActionServer__expire_goals()  # last: a result may have been requested just before
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return the number of handles it adds to a wait set."""
@@ -467,23 +467,23 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[AnyGoalHandle], Any] | None
     ) -> None:
-        """Call this with each accepted goal; None for the default."""
+        """Set the function called with each accepted goal; None for the default."""
         self._handle_accepted_callback = (
             handle_accepted_callback or default_handle_accepted_callback
         )
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Ask this whether a goal is accepted; None for the default."""
+        """Set the function that decides whether a goal is accepted; None for the default."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_cancel_callback(
         self, cancel_callback: Callable[[AnyGoalHandle], Any] | None
     ) -> None:
-        """Ask this whether a goal may be cancelled; None for the default."""
+        """Set the function that decides whether a goal may be cancelled; None for the default."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def register_execute_callback(self, execute_callback: Callable[[AnyGoalHandle], Any]) -> None:
-        """Call this to execute goals.
+        """Set the function that executes goals.
 
         Raises:
             TypeError: it is not callable.

@@ -1,4 +1,4 @@
-"""Modules that rclpy calls experimental."""
+"""Modules that rclpy marks as experimental."""
 
 from rclpy.experimental.async_node import (
     AsyncClient,

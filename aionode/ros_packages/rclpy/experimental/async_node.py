@@ -1,7 +1,7 @@
 """A node whose callbacks run in the event loop that awaits it, without executors.
 
-It is newer than Kilted. A program that uses it may as well be written with `aionode.Node`, which
-has the same and more.
+It is newer than Kilted. Programs that use it can just as well use `aionode.Node`, which offers the
+same and more.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ AsyncTimer = Timer
 
 
 class AsyncClock(ROSClock):
-    """A clock of ROS time that can be awaited: ``await clock.sleep(1.0)``."""
+    """A ROS time clock that can be awaited: ``await clock.sleep(1.0)``."""
 
 
 class AsyncClient(Client[Any, Any]):
@@ -77,7 +77,7 @@ class AsyncClient(Client[Any, Any]):
         """Wait until a server is available.
 
         Args:
-            check_interval: How often to look, in seconds.
+            check_interval: How often to check, in seconds.
         """
         while not self.service_is_ready():
             await pause(check_interval)
@@ -116,8 +116,8 @@ class LoopWakeup:
 class AsyncNode(Node):
     """A node for ``await node.run()``, or ``async with node:``.
 
-    Arguments are those of `Node`. Callbacks are functions or coroutine functions; one of an entity
-    runs at a time, unless the entity is `concurrent`.
+    Arguments are those of `Node`. Callbacks are functions or coroutine functions; calls of an
+    entity's callback do not overlap, unless the entity is `concurrent`.
     """
 
     def __init__(self, node_name: str, **options: Any) -> None:
@@ -139,10 +139,10 @@ class AsyncNode(Node):
     # Lifetime
 
     async def __aenter__(self) -> Self:
-        """Begin to call callbacks.
+        """Start calling callbacks.
 
         Raises:
-            RuntimeError: it runs already, or was destroyed.
+            RuntimeError: it is already running, or was destroyed.
         """
         if self.__destroyed.is_set():
             raise RuntimeError("Node has been destroyed and cannot be reentered")
@@ -166,7 +166,7 @@ class AsyncNode(Node):
         """Destroy the node; its callbacks are cancelled.
 
         Raises:
-            ExceptionGroup: what callbacks have raised.
+            ExceptionGroup: exceptions of callbacks.
         """
         tasks = self.__tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
@@ -199,7 +199,7 @@ class AsyncNode(Node):
 
         Args:
             fully_qualified_node_name: Namespace and name; the leading slash may be omitted.
-            check_interval: How often to look, in seconds.
+            check_interval: How often to check, in seconds.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
         while wanted not in self.get_fully_qualified_node_names():
@@ -296,7 +296,7 @@ class AsyncNode(Node):
         self.__pumps[entity] = self.__tasks.create_task(self.__pump(entity))
 
     async def __dispatch(self) -> None:
-        """Tell all entities that something has happened to one of them."""
+        """Notify all entities that something has happened to one of them."""
         while True:
             await self.__event.wait()
             self.__event.clear()
@@ -334,7 +334,7 @@ class AsyncNode(Node):
             alarm.cancel()
 
     def __take(self, entity: Any) -> Any:
-        """Take what is ready, and return the coroutine that handles it, or None."""
+        """Take the ready item, and return the coroutine that handles it, or None."""
         try:
             with entity.handle:
                 if isinstance(entity, Subscription):
@@ -367,6 +367,6 @@ class AsyncNode(Node):
 
 
 async def called(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call a function, and await what it returns if that can be."""
+    """Call a function, and await its result if it is awaitable."""
     result = callback(*args)
     return await result if inspect.isawaitable(result) else result

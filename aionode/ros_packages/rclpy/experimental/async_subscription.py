@@ -1,4 +1,4 @@
-"""`AsyncSubscription`, as rclpy of ROS 2 Lyrical has it in a module of its own."""
+"""`AsyncSubscription`, which rclpy of ROS 2 Lyrical has in its own module."""
 
 from rclpy.experimental.async_node import AsyncSubscription
 

@@ -1,4 +1,4 @@
-"""`AsyncTimer`, as rclpy of ROS 2 Lyrical has it in a module of its own."""
+"""`AsyncTimer`, which rclpy of ROS 2 Lyrical has in its own module."""
 
 from rclpy.experimental.async_node import AsyncTimer
 

@@ -1,4 +1,4 @@
-"""The events executor: here every executor waits for events, and collects no wait sets."""
+"""The events executor: here, every executor waits for events instead of collecting wait sets."""
 
 from __future__ import annotations
 
@@ -8,4 +8,4 @@ __all__ = ["EventsExecutor"]
 
 
 class EventsExecutor(SingleThreadedExecutor):
-    """Calls callbacks in the thread that spins, as `SingleThreadedExecutor` does."""
+    """Calls callbacks in the thread that spins, like `SingleThreadedExecutor`."""

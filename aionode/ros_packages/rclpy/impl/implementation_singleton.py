@@ -1,4 +1,4 @@
-"""Gives access to what rclpy has in its extension module."""
+"""Gives access to names of rclpy's extension module."""
 
 from rclpy import _rclpy_pybind11 as rclpy_implementation
 

@@ -24,10 +24,10 @@ class SimpleManagedEntity(core.SimpleManagedEntity):
         *,
         when_not_enabled: Callable[..., Any] | None = None,
     ) -> Any:
-        """Return a method that does nothing, or calls `when_not_enabled`, while it does not work.
+        """Return a method that, while not enabled, does nothing or calls `when_not_enabled`.
 
-        To be used as a decorator, with or without arguments. In rclpy, `when_not_enabled` gets no
-        arguments, and such a method returns nothing.
+        It can be used as a decorator, with or without arguments. As in rclpy, `when_not_enabled`
+        gets no arguments, and such a method returns nothing.
         """
 
         def decorate(method: Callable[..., Any]) -> Callable[..., None]:

@@ -35,10 +35,10 @@ class LifecycleState(NamedTuple):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Makes a node a managed one; to be used with `Node`, as `LifecycleNode` does.
+    """Makes a node a managed node; to be used with `Node`, as in `LifecycleNode`.
 
     Args:
-        enable_communication_interface: Whether others can ask for its state and change it.
+        enable_communication_interface: Whether others can query and change its state.
         callback_group: The group of those services.
     """
 
@@ -54,10 +54,10 @@ class LifecycleNodeMixin(ManagedEntity):
         callback_group: CallbackGroup | None = None,
     ) -> None:
         if not isinstance(self, Node):
-            raise RuntimeError(  # as rclpy
+            raise RuntimeError(  # as rclpy does
                 "LifecycleNodeMixin uses Node fields so Node needs to be in the inheritance tree."
             )
-        # A dict for its order; rclpy has a set.
+        # A dict for its order; rclpy uses a set.
         self._managed_entities: dict[ManagedEntity, None] = {}
         if not isinstance(enable_communication_interface, bool):
             raise TypeError(
@@ -106,23 +106,23 @@ class LifecycleNodeMixin(ManagedEntity):
     # Transitions
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Configure the node; return what its callback returned."""
+        """Configure the node; return the result of its callback."""
         return self._LifecycleNode__change_state(1)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Clean the node up; return what its callback returned."""
+        """Clean the node up; return the result of its callback."""
         return self._LifecycleNode__change_state(2)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Activate the node; return what its callback returned."""
+        """Activate the node; return the result of its callback."""
         return self._LifecycleNode__change_state(3)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Deactivate the node; return what its callback returned."""
+        """Deactivate the node; return the result of its callback."""
         return self._LifecycleNode__change_state(4)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Shut the node down; return what its callback returned.
+        """Shut the node down; return the result of its callback.
 
         Raises:
             RCLError: it is shut down, or in a transition.
@@ -155,7 +155,7 @@ class LifecycleNodeMixin(ManagedEntity):
     def _LifecycleNode__execute_callback(
         self, name: str, before: LifecycleState
     ) -> TransitionCallbackReturn:
-        """Call the callback that decides which state follows; an exception counts as an error."""
+        """Call the callback that determines the next state; an exception counts as an error."""
         callback: Callable[[LifecycleState], TransitionCallbackReturn] = getattr(self, name)
         try:
             return callback(before)
@@ -175,10 +175,10 @@ class LifecycleNodeMixin(ManagedEntity):
     # Entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Tell `entity` of transitions.
+        """Notify `entity` of transitions.
 
         Raises:
-            TypeError: it is no `ManagedEntity`.
+            TypeError: it is not a `ManagedEntity`.
         """
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
@@ -201,27 +201,27 @@ class LifecycleNodeMixin(ManagedEntity):
         return TransitionCallbackReturn.SUCCESS
 
     def on_configure(self, state: Any) -> TransitionCallbackReturn:
-        """Handle the transition from unconfigured to inactive; tells the managed entities."""
+        """Handle the transition from unconfigured to inactive; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_configure", state)
 
     def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
-        """Handle the transition from inactive to unconfigured; tells the managed entities."""
+        """Handle the transition from inactive to unconfigured; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_cleanup", state)
 
     def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
-        """Handle the transition to finalized; tells the managed entities."""
+        """Handle the transition to finalized; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_shutdown", state)
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        """Handle the transition from inactive to active; tells the managed entities."""
+        """Handle the transition from inactive to active; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_activate", state)
 
     def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
-        """Handle the transition from active to inactive; tells the managed entities."""
+        """Handle the transition from active to inactive; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_deactivate", state)
 
     def on_error(self, state: Any) -> TransitionCallbackReturn:
-        """Handle an error in another callback; tells the managed entities."""
+        """Handle an error in another callback; notifies the managed entities."""
         return self._LifecycleNode__tell_entities("on_error", state)
 
     def create_lifecycle_publisher(
@@ -233,7 +233,7 @@ class LifecycleNodeMixin(ManagedEntity):
         publisher_class: None = None,
         **kwargs: Any,
     ) -> LifecyclePublisher[Any]:
-        """Return a publisher that drops what is published while the node is not active.
+        """Return a publisher that drops messages published while the node is not active.
 
         Raises:
             TypeError: a `publisher_class` is given.
@@ -250,7 +250,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
-        """Destroy a publisher; return whether it was one of this node."""
+        """Destroy a publisher; return whether it belonged to this node."""
         self._managed_entities.pop(publisher, None)
         assert isinstance(self, Node)  # noqa: S101  # checked by the constructor
         return self.destroy_publisher(publisher)
@@ -278,7 +278,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
 
     Args:
         node_name: Its name.
-        enable_communication_interface: Whether others can ask for its state and change it.
+        enable_communication_interface: Whether others can query and change its state.
         options: Those of `Node`.
     """
 

@@ -13,7 +13,7 @@ MsgT = TypeVar("MsgT")
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
-    """A publisher that drops what is published while its node is not active."""
+    """A publisher that drops messages published while its node is not active."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)

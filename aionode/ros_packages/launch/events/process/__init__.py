@@ -1,4 +1,4 @@
-"""`launch.events.process`: what happens to processes, and requests to them."""
+"""`launch.events.process`: events of processes, and requests to them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = [
 
 
 class RunningProcessEvent(Event):
-    """Something that happened to a process."""
+    """An event of a process."""
 
     name = "launch.events.process.RunningProcessEvent"
 
@@ -51,7 +51,7 @@ class RunningProcessEvent(Event):
 
 
 class ProcessStarted(RunningProcessEvent):
-    """A process has been started."""
+    """A process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
@@ -96,7 +96,7 @@ class ProcessStderr(ProcessIO):
 
 
 class ProcessTargetedEvent(Event):
-    """A request to some of the processes."""
+    """A request to some processes."""
 
     name = "launch.events.process.ProcessTargetedEvent"
 
@@ -111,7 +111,7 @@ class ShutdownProcess(ProcessTargetedEvent):
 
 
 class SignalProcess(ProcessTargetedEvent):
-    """The request to send processes a signal."""
+    """The request to send a signal to processes."""
 
     name = "launch.events.process.SignalProcess"
 
@@ -126,7 +126,7 @@ class SignalProcess(ProcessTargetedEvent):
 
 
 class ProcessStdin(ProcessTargetedEvent):
-    """The request to hand processes some input."""
+    """The request to pass input to processes."""
 
     name = "launch.events.process.ProcessStdin"
 
@@ -136,26 +136,26 @@ class ProcessStdin(ProcessTargetedEvent):
 
 
 def matches_action(action: Any) -> Callable[[Any], bool]:
-    """Return what is true of the process of one action."""
+    """Return a matcher for the process of one action."""
     return lambda candidate: candidate is action
 
 
 def matches_name(name: str) -> Callable[[Any], bool]:
-    """Return what is true of processes with a name."""
+    """Return a matcher for processes with a name."""
     return lambda candidate: (
         candidate.process_details is not None and candidate.process_details["name"] == name
     )
 
 
 def matches_pid(pid: int) -> Callable[[Any], bool]:
-    """Return what is true of the process with a number."""
+    """Return a matcher for the process with a PID."""
     return lambda candidate: (
         candidate.process_details is not None and candidate.process_details["pid"] == pid
     )
 
 
 def matches_executable(executable: str) -> Callable[[Any], bool]:
-    """Return what is true of processes of a program."""
+    """Return a matcher for processes of a program."""
     return lambda candidate: (
         candidate.process_details is not None
         and candidate.process_details["cmd"][0].endswith(executable)
