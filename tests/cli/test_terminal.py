@@ -142,6 +142,20 @@ def test_topic_echo_once(terminals: Terminals) -> None:
     assert terminals.shown("topic", "echo", "--once", "/chatter") == ("data: Hello\n---\n", 0)
 
 
+def test_topic_plot_draws_until_ctrl_c(terminals: Terminals) -> None:
+    """In colours and dots, again and again in the same place; Ctrl-C is its normal end."""
+    command = terminals.open("topic", "plot", "/stamped.header.stamp.nanosec", "-w", "2")
+    for _ in range(3):
+        command.expect("[\u2801-\u28ff]")
+        command.expect(r"/stamped\.header\.stamp\.nanosec: [0-9.e+]+")
+    command.sendintr()
+    command.expect(pexpect.EOF)
+    command.close()
+
+    assert "Traceback" not in command.before
+    assert command.exitstatus == 0
+
+
 def test_service_call(terminals: Terminals) -> None:
     """The output of the tutorial, word for word."""
     request = ("example_interfaces/srv/AddTwoInts", "{a: 42, b: 58}")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import math
 import sys
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeAlias
 
 import msgspec
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 __all__ = ["Output", "unwritable"]
+
+Shown: TypeAlias = str | list[tuple[str, str]]
+"""A text for a terminal: whole, or in pieces with their colours."""
 
 CLEAR = "\x1b[H\x1b[2J"
 
@@ -131,10 +134,11 @@ class Output:
             yield
 
     @contextlib.contextmanager
-    def live(self) -> Iterator[Callable[[Callable[[int], str]], None]]:
+    def live(self) -> Iterator[Callable[[Callable[[int], Shown]], None]]:
         """Yield a function that shows a text in place of the previous one.
 
-        Its argument is a function that returns the text for a terminal width in characters.
+        Its argument is a function that returns the text for a terminal width in characters, whole
+        or in pieces, each with the name of its colour.
         """
         from rich.console import Console
         from rich.live import Live
@@ -143,8 +147,10 @@ class Output:
         console = Console(file=self._stdout)
         with Live(console=console, auto_refresh=False) as live:
 
-            def update(text_for: Callable[[int], str]) -> None:
-                text = Text(text_for(console.width), no_wrap=True, overflow="ellipsis")
+            def update(text_for: Callable[[int], Shown]) -> None:
+                shown = text_for(console.width)
+                pieces = [(shown, "")] if isinstance(shown, str) else shown
+                text = Text.assemble(*pieces, no_wrap=True, overflow="ellipsis")
                 live.update(text, refresh=True)
 
             yield update

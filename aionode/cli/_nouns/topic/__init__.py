@@ -1,4 +1,4 @@
-"""``aionode topic``: list, inspect and publish; `echo` and `measure` contain the rest."""
+"""``aionode topic``: list, inspect and publish; `echo`, `measure` and `plot` contain the rest."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import click
 
 from aionode.cli._nouns.topic.echo import echoing, name_option, qos_from, qos_options
 from aionode.cli._nouns.topic.measure import measuring
+from aionode.cli._nouns.topic.plot import plotting
 from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
 from aionode.cli._support.completion import name_argument, values_parameters
@@ -41,9 +42,9 @@ if TYPE_CHECKING:
 __all__ = ["info", "list_topics", "pub", "topic_command"]
 
 
-@click.group("topic", commands={**echoing.commands, **measuring.commands})
+@click.group("topic", commands={**echoing.commands, **measuring.commands, **plotting.commands})
 def topic_command() -> None:
-    """List, print, publish and measure topics."""
+    """List, print, publish, measure and plot topics."""
 
 
 add_type_and_find(topic_command, TOPIC)
