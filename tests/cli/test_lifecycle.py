@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any
 
@@ -9,9 +10,10 @@ import pytest
 
 from aionode import Node
 from aionode.cli._nouns.lifecycle import get_state, list_nodes, list_transitions, set_state
-from aionode.errors import CommandError
+from aionode.errors import CommandError, RequestTimeoutError
+from aionode.interfaces.lifecycle_msgs.srv import GetState
 from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
-from aionode.testing import settle
+from aionode.testing import ManualClock, settle
 
 
 class Camera(LifecycleNode):
@@ -98,3 +100,48 @@ async def test_an_unknown_node_is_an_error(tool: Node, camera: Camera, screen: A
     """A node that is not managed is not found either."""
     with pytest.raises(CommandError, match="Node not found"):
         await get_state(tool, "/talker", output=screen.output)
+
+
+class Slow(LifecycleNode):
+    """Is never configured."""
+
+    async def on_configure(self, state: State) -> TransitionCallbackReturn:
+        """Wait for what does not come."""
+        await asyncio.Event().wait()
+        return TransitionCallbackReturn.SUCCESS
+
+
+async def test_set_waits_for_a_transition_as_long_as_asked(
+    tool: Node,
+    node_factory: Callable[..., Any],
+    manual_clock: ManualClock,
+    screen: Any,
+) -> None:
+    """Without the option it waits for as long as the transition takes, as ros2 does."""
+    node_factory(Slow, "slow")
+    await settle()
+
+    waiting = set_state(tool, "/slow", "configure", timeout=2.0, output=screen.output)
+    with pytest.raises(RequestTimeoutError, match="change_state"):
+        await asyncio.gather(waiting, manual_clock.advance(3.0))
+
+
+async def test_get_gives_up_a_node_that_does_not_answer(
+    tool: Node,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    screen: Any,
+) -> None:
+    """After the time that the option says."""
+    silent = node_factory("silent")
+
+    async def never(request: Any, response: Any) -> Any:
+        await asyncio.Event().wait()
+        return response
+
+    silent.create_service(GetState, "~/get_state", never)
+    await settle()
+
+    waiting = get_state(tool, "/silent", timeout=0.5, output=screen.output)
+    with pytest.raises(RequestTimeoutError, match="get_state"):
+        await asyncio.gather(waiting, manual_clock.advance(1.0))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,7 +22,8 @@ from aionode.cli._nouns.param import (
     like,
     list_parameters,
     load,
-    set_parameter,
+    param_command,
+    set_parameters,
 )
 from aionode.cli._nouns.param.text import file_form, file_text
 from aionode.errors import CommandError, ParameterFileError
@@ -68,6 +70,89 @@ async def test_list_of_all_prints_the_nodes(
     )
 
 
+async def test_several_values_are_printed_below_their_names(
+    tool: Node, owner: Node, screen: Any
+) -> None:
+    """As ros2 of Lyrical does."""
+    await get(tool, "/param_node", ["name", "speed"], output=screen.output)
+    await get(tool, "/param_node", ["name", "speed"], hide_type=True, output=screen.output)
+
+    assert screen.text == (
+        "name:\n  String value is: bob\nspeed:\n  Double value is: 1.5\nname: bob\nspeed: 1.5\n"
+    )
+
+
+async def test_one_that_is_missing_among_several_is_named(
+    tool: Node, owner: Node, screen: Any
+) -> None:
+    """ROS answers nothing for any of them then."""
+    with pytest.raises(CommandError, match="no parameter 'sped'"):
+        await get(tool, "/param_node", ["name", "sped"], output=screen.output)
+
+
+async def test_a_parameter_is_asked_of_all_nodes_without_the_name_of_one(
+    tool: Node, owner: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Nodes that do not have it are left out, as ros2 of Lyrical does."""
+    other = node_factory("other")
+    other.declare_parameter("speed", 2)
+    node_factory("silent", start_parameter_services=False)
+
+    assert await get(tool, "speed", [], output=screen.output) == 0
+    assert await get(tool, "name", [], hide_type=True, output=screen.output) == 0
+
+    assert screen.text == (
+        "/other:\n  Integer value is: 2\n/param_node:\n  Double value is: 1.5\n/param_node: bob\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [("sped", "'sped' is set on none of 1 nodes"), ("/param_node", "'/param_node' is a node")],
+)
+async def test_a_single_name_that_no_node_knows_is_an_error(
+    tool: Node, owner: Node, screen: Any, name: str, problem: str
+) -> None:
+    """It may have been meant as the name of a node."""
+    with pytest.raises(CommandError, match=problem):
+        await get(tool, name, [], output=screen.output)
+
+
+async def test_several_parameters_are_set_one_by_one(tool: Node, owner: Node, screen: Any) -> None:
+    """Each has its result, and the status is that of the worst."""
+    pairs = [("name", "ann"), ("speed", "fast")]
+    status = await set_parameters(tool, "/param_node", pairs, output=screen.output)
+
+    assert status == 1
+    assert "name: Set parameter successful" in screen.text
+    assert "speed: Setting parameter failed" in screen.errors
+    assert owner.get_parameter("name").value == "ann"
+
+
+async def test_parameters_are_set_all_or_none_if_asked(
+    tool: Node, owner: Node, screen: Any
+) -> None:
+    """With one result for all of them."""
+    refused = [("name", "ann"), ("speed", "fast")]
+    fitting = [("name", "eve"), ("speed", "2.5")]
+
+    assert await set_parameters(tool, "/param_node", refused, atomic=True, output=screen.output)
+    assert owner.get_parameter("name").value == "bob"
+    assert not await set_parameters(tool, "/param_node", fitting, atomic=True, output=screen.output)
+
+    assert "Setting parameters atomically failed" in screen.errors
+    assert "Set parameters atomically successful" in screen.text
+    assert owner.get_parameter("speed").value == 2.5
+
+
+def test_a_parameter_without_a_value_is_an_error_of_usage() -> None:
+    """Nothing is asked of the network before."""
+    done = CliRunner().invoke(param_command, ["set", "/param_node", "name", "ann", "speed"])
+
+    assert done.exit_code == 2
+    assert "'speed' has no value" in done.output
+
+
 async def test_list_can_be_narrowed(tool: Node, owner: Node, screen: Any) -> None:
     """By a regular expression, and with types."""
     await list_parameters(tool, "param_node", pattern="s.*ed$", types=True, output=screen.output)
@@ -95,15 +180,15 @@ async def test_get_prints_type_and_value(
     """In ros2's words."""
     owner.declare_parameter(name, value)
 
-    await get(tool, "/param_node", name, output=screen.output)
+    await get(tool, "/param_node", [name], output=screen.output)
 
     assert screen.text == f"{shown}\n"
 
 
 async def test_get_can_print_the_value_alone(tool: Node, owner: Node, screen: Any) -> None:
     """For shell variables; programs have --json."""
-    await get(tool, "/param_node", "name", hide_type=True, output=screen.output)
-    await get(tool, "/param_node", "speed", output=screen.json_output)
+    await get(tool, "/param_node", ["name"], hide_type=True, output=screen.output)
+    await get(tool, "/param_node", ["speed"], output=screen.json_output)
 
     assert screen.text == (
         'bob\n{"node":"/param_node","name":"speed","type":"double","value":1.5}\n'
@@ -118,7 +203,7 @@ async def test_set_says_that_it_is_done(
     name: str, text: str, value: Any, tool: Node, owner: Node, screen: Any
 ) -> None:
     """The value is YAML, so a string that looks like a number needs quotes."""
-    status = await set_parameter(tool, "/param_node", name, text, output=screen.output)
+    status = await set_parameters(tool, "/param_node", [(name, text)], output=screen.output)
 
     assert status == 0
     assert screen.text == "Set parameter successful\n"
@@ -148,7 +233,7 @@ async def test_set_reads_values_as_ros2_does(
     """With PyYAML; the rules of parameter files are those of rcl, where ``y`` is a bool."""
     owner.declare_parameter("any", None, ParameterDescriptor(dynamic_typing=True))
 
-    await set_parameter(tool, "/param_node", "any", text, output=screen.output)
+    await set_parameters(tool, "/param_node", [("any", text)], output=screen.output)
 
     assert owner.get_parameter("any").value == value
 
@@ -156,7 +241,7 @@ async def test_set_reads_values_as_ros2_does(
 async def test_set_refuses_a_mapping(tool: Node, owner: Node, screen: Any) -> None:
     """No parameter holds one; ros2 ends with a traceback."""
     with pytest.raises(CommandError, match=r"value '\{a: 1\}': a mapping"):
-        await set_parameter(tool, "/param_node", "name", "{a: 1}", output=screen.output)
+        await set_parameters(tool, "/param_node", [("name", "{a: 1}")], output=screen.output)
 
 
 @pytest.mark.parametrize(
@@ -170,7 +255,7 @@ async def test_a_failed_set_is_an_error(
     name: str, reason: str, tool: Node, owner: Node, screen: Any
 ) -> None:
     """ros2 returns 0 here, so that scripts go on with the old value."""
-    status = await set_parameter(tool, "/param_node", name, "5", output=screen.output)
+    status = await set_parameters(tool, "/param_node", [(name, "5")], output=screen.output)
 
     assert status == 1
     assert screen.text == ""
@@ -180,7 +265,7 @@ async def test_a_failed_set_is_an_error(
 async def test_malformed_yaml_is_no_string(tool: Node, owner: Node, screen: Any) -> None:
     """Otherwise text with an unclosed bracket would be stored as a string."""
     with pytest.raises(CommandError, match=r"value '\[1, 2'.*not YAML"):
-        await set_parameter(tool, "/param_node", "name", "[1, 2", output=screen.output)
+        await set_parameters(tool, "/param_node", [("name", "[1, 2")], output=screen.output)
 
 
 async def test_an_undeclared_parameter_is_named(tool: Node, owner: Node, screen: Any) -> None:
@@ -188,7 +273,7 @@ async def test_an_undeclared_parameter_is_named(tool: Node, owner: Node, screen:
     with pytest.raises(
         CommandError, match=r"Parameter not set: no parameter 'sped'\. Did you mean"
     ):
-        await get(tool, "/param_node", "sped", output=screen.output)
+        await get(tool, "/param_node", ["sped"], output=screen.output)
     with pytest.raises(CommandError, match="no parameter 'nope'"):
         await describe(tool, "/param_node", ["name", "nope"], output=screen.output)
 
@@ -196,7 +281,7 @@ async def test_an_undeclared_parameter_is_named(tool: Node, owner: Node, screen:
 async def test_an_unknown_node_is_named(tool: Node, owner: Node, screen: Any) -> None:
     """After the timeout."""
     with pytest.raises(CommandError, match=r"Node not found: '/param_nod'\. Did you mean"):
-        await get(tool, "param_nod", "name", timeout=0.001, output=screen.output)
+        await get(tool, "param_nod", ["name"], timeout=0.001, output=screen.output)
 
 
 async def test_a_node_without_parameters_is_reported(
@@ -206,7 +291,7 @@ async def test_a_node_without_parameters_is_reported(
     node_factory("silent", start_parameter_services=False)
 
     with pytest.raises(CommandError, match="Node '/silent' has no parameter services"):
-        await get(tool, "/silent", "name", timeout=0.001, output=screen.output)
+        await get(tool, "/silent", ["name"], timeout=0.001, output=screen.output)
 
 
 async def test_describe_prints_constraints(tool: Node, owner: Node, screen: Any) -> None:
@@ -281,7 +366,7 @@ async def test_bytes_are_numbers_in_records(tool: Node, owner: Node, screen: Any
     """JSON has no bytes."""
     owner.declare_parameter("data", b"\x01\xff")
 
-    await get(tool, "/param_node", "data", output=screen.json_output)
+    await get(tool, "/param_node", ["data"], output=screen.json_output)
     await dump(tool, "/param_node", output=screen.json_output)
 
     assert screen.records[0]["value"] == [1, 255]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from aionode import Node
 from aionode.cli._nouns.service import call, info
 from aionode.cli._support.nouns import SERVICE
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import CommandError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.testing import ManualClock, settle
@@ -158,6 +160,47 @@ async def test_type_and_find_are_inverse(tool: Node, server: Node, screen: Any) 
     await SERVICE.find(tool, ADD, count=True, output=screen.output)
 
     assert screen.text == f"{ADD}\n/add_two_ints\n1\n"
+
+
+async def test_verbose_info_describes_clients_and_servers(
+    tool: Node, server: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """In the lines that rclpy of Lyrical makes of one endpoint; a client is one over Zenoh."""
+    user = node_factory("user", namespace="/team")
+    user.create_client(AddTwoInts, "/add_two_ints")
+
+    await info(tool, "/add_two_ints", verbose=True, output=screen.output)
+
+    text = re.sub(r"GID: [0-9a-f.]+", "GID: …", screen.text)
+    begin = (
+        f"Type: {ADD}\n"
+        "Clients count: 1\n"
+        "Node name: user\n"
+        "Node namespace: /team\n"
+        f"Service type: {ADD}\n"
+        f"Service type hash: {type_hash(AddTwoInts)}\n"
+        "Endpoint type: CLIENT\n"
+        "Endpoint count: 1\n"
+        "GID: …\n"
+        "QoS profile:\n"
+        "  Reliability: RELIABLE\n"
+    )
+    assert text.startswith(begin)
+    assert "\n\nServices count: 1\nNode name: add_server\nNode namespace: /\n" in text
+
+
+async def test_verbose_info_as_a_record_has_every_endpoint(
+    tool: Node, server: Node, screen: Any
+) -> None:
+    """With its profile and times in nanoseconds, as that of a topic."""
+    await info(tool, "/add_two_ints", verbose=True, output=screen.json_output)
+    await info(tool, "/add_two_ints", output=screen.json_output)
+
+    detailed, short = screen.records
+    assert detailed["clients"] == []
+    assert detailed["servers"][0]["node"] == "/add_server"
+    assert detailed["servers"][0]["qos"]["reliability"] == "reliable"
+    assert (short["clients"], short["servers"]) == (0, 1)
 
 
 @pytest.mark.parametrize("verb", [info, SERVICE.print_type])

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 from aionode import Context, Node, QoSProfile
 from aionode.cli._nouns.topic import measure
@@ -174,7 +175,7 @@ def test_a_narrow_terminal_drops_columns(width: int, columns: list[str]) -> None
     """The names of topics and the rates stay whole."""
     rows = [("/chatter", "5.000", "0.200", "0.200", "0.00000", "4"), ("/b", *measure.SILENT)]
 
-    text = measure.hz_table(rows, width)
+    text = measure.fitted_table(measure.HZ_HEADER, rows, width)
 
     assert max(map(len, text.splitlines())) < width
     assert [word for word in measure.HZ_HEADER if word in text] == columns
@@ -209,7 +210,7 @@ async def test_it_waits_for_a_topic_and_says_so(
     screen: Any,
 ) -> None:
     """The type is known when the first publisher appears."""
-    async with running(bw(tool, "/late", output=screen.output)):
+    async with running(bw(tool, ["/late"], output=screen.output)):
         assert screen.text == "WARNING: topic [/late] does not appear to be published yet\n"
         node_factory("late").create_publisher(String, "/late", 1)
         await settle()
@@ -220,7 +221,7 @@ async def test_bw_prints_bytes_per_second_and_sizes(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
     """CDR with its header, as sent: 4 + 4 + 11 + 1 bytes."""
-    async with running(bw(tool, "/chatter", output=screen.output)):
+    async with running(bw(tool, ["/chatter"], output=screen.output)):
         await manual_clock.advance(1.0)
 
     assert screen.text == (
@@ -228,6 +229,67 @@ async def test_bw_prints_bytes_per_second_and_sizes(
         "100 B/s from 5 messages\n"
         "\tMessage size mean: 20 B min: 20 B max: 20 B\n"
     )
+
+
+async def test_bw_of_several_topics_is_a_table(
+    running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
+) -> None:
+    """In the columns of ros2 in Lyrical, with a row for a silent topic, too."""
+    talker.create_publisher(String, "/silent", 10)
+
+    async with running(bw(tool, ["/chatter", "/silent"], output=screen.output)):
+        await manual_clock.advance(1.05)
+
+    assert screen.text == (
+        "Subscribed to [/chatter]\n"
+        "Subscribed to [/silent]\n"
+        " topic     bandwidth   window   mean   min    max \n"
+        "==================================================\n"
+        "/chatter   100 B/s     5        20 B   20 B   20 B\n"
+        "/silent    -           -        -      -      -   \n\n"
+    )
+
+
+async def test_bw_of_several_topics_is_a_record_for_each(
+    running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
+) -> None:
+    """A silent one has no bandwidth, and no sizes."""
+    talker.create_publisher(String, "/silent", 10)
+
+    async with running(bw(tool, ["/chatter", "/silent"], output=screen.json_output)):
+        await manual_clock.advance(1.05)
+
+    chatter, silent = screen.records
+    assert chatter["bytes_per_s"] == pytest.approx(100.0)
+    assert (silent["bytes_per_s"], silent["mean_bytes"], silent["window"]) == (0.0, None, 0)
+
+
+@pytest.mark.parametrize("verb", [hz, bw])
+async def test_all_topics_are_those_of_now(
+    running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any, verb: Any
+) -> None:
+    """As --all of ros2 in Lyrical, which says how many they are."""
+    talker.create_publisher(String, "/other", 10)
+
+    async with running(verb(tool, [], every=True, output=screen.output)):
+        await manual_clock.advance(1.05)
+
+    topics = ("/chatter", "/other", "/parameter_events", "/rosout")
+    first, *subscribed = screen.text.splitlines()[: 1 + len(topics)]
+    assert first == "Subscribing to all 4 available topics..."
+    assert subscribed == [f"Subscribed to [{name}]" for name in topics]
+
+
+@pytest.mark.parametrize("verb", ["hz", "bw"])
+@pytest.mark.parametrize(
+    ("arguments", "problem"), [([], "--all measures all topics"), (["/a", "--all"], "not both")]
+)
+def test_names_or_all_topics_are_needed(verb: str, arguments: list[str], problem: str) -> None:
+    """Nothing is asked of the network before."""
+    done = CliRunner().invoke(measure.measuring, [verb, *arguments])
+
+    assert done.exit_code == 2
+    assert problem in done.output
 
 
 async def test_delay_prints_the_age_by_the_header(

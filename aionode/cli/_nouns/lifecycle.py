@@ -9,7 +9,7 @@ import click
 from aionode.cli._support import lookup
 from aionode.cli._support.command import command
 from aionode.cli._support.completion import complete_of_node, name_argument
-from aionode.cli._support.options import count_option, hidden_nodes_option
+from aionode.cli._support.options import count_option, hidden_nodes_option, positive
 from aionode.errors import CommandError
 from aionode.graph import EndpointKind
 from aionode.interfaces.lifecycle_msgs.msg import Transition
@@ -38,6 +38,15 @@ ANSWER_S = 10.0
 """Timeout for answers that require no work by the node, in seconds."""
 
 node_argument = name_argument("node")
+
+timeout_option = click.option(
+    "--timeout",
+    metavar="N",
+    type=positive,
+    default=ANSWER_S,
+    show_default=True,
+    help="Wait at most N seconds for an answer.",
+)
 
 
 @click.group("lifecycle")
@@ -73,9 +82,15 @@ async def list_nodes(
     click.option(
         "--include-hidden-nodes", "hidden", is_flag=True, help="Show hidden nodes as well."
     ),
+    timeout_option,
 )
 async def get_state(
-    node: Node, node_name: str | None, *, output: Output, hidden: bool = False
+    node: Node,
+    node_name: str | None,
+    *,
+    output: Output,
+    hidden: bool = False,
+    timeout: float = ANSWER_S,
 ) -> None:
     """Print the state of one managed node, or of all.
 
@@ -85,7 +100,7 @@ async def get_state(
     """
     names = [known(node, node_name)] if node_name else managed_nodes(node, hidden=hidden)
     for name in names:
-        response = await ask(node, name, "get_state", GetState, GetState.Request())
+        response = await ask(node, name, "get_state", GetState, GetState.Request(), timeout)
         state = response.current_state
         text = f"{state.label} [{state.id}]"
         output.item(
@@ -102,9 +117,15 @@ async def get_state(
         "-a", "--all", "every", is_flag=True,
         help="List all transitions, not only the available ones.",
     ),
+    timeout_option,
 )  # fmt: skip
 async def list_transitions(
-    node: Node, node_name: str, *, output: Output, every: bool = False
+    node: Node,
+    node_name: str,
+    *,
+    output: Output,
+    every: bool = False,
+    timeout: float = ANSWER_S,
 ) -> None:
     """List the transitions that are available to a managed node now.
 
@@ -113,7 +134,7 @@ async def list_transitions(
         RequestTimeoutError: the node does not answer.
     """
     name = known(node, node_name)
-    for available in await transitions(node, name, every=every):
+    for available in await transitions(node, name, every=every, timeout=timeout):
         output.item(
             f"- {available.transition.label} [{available.transition.id}]\n"
             f"\tStart: {available.start_state.label}\n\tGoal: {available.goal_state.label}",
@@ -138,15 +159,27 @@ async def labels(node: Node, name: str) -> list[str]:
     "set",
     node_argument,
     click.argument("transition", shell_complete=complete_of_node(labels)),
+    click.option(
+        "--timeout", metavar="N", type=positive, help="Wait at most N seconds for the transition."
+    ),
 )
-async def set_state(node: Node, node_name: str, transition: str, *, output: Output) -> None:
+async def set_state(
+    node: Node,
+    node_name: str,
+    transition: str,
+    *,
+    output: Output,
+    timeout: float | None = None,
+) -> None:
     """Trigger a transition of a managed node, by its label or id.
 
     Raises:
         CommandError: there is no such node or transition, or the transition failed.
+        RequestTimeoutError: the node does not answer.
     """
     name = known(node, node_name)
-    available = [description.transition for description in await transitions(node, name)]
+    listed = await transitions(node, name, timeout=timeout or ANSWER_S)
+    available = [description.transition for description in listed]
     fitting = [choice for choice in available if transition in {choice.label, str(choice.id)}]
     if not fitting and transition == "shutdown":
         fitting = [Transition(label=transition)]  # available in every state, but not listed
@@ -155,7 +188,7 @@ async def set_state(node: Node, node_name: str, transition: str, *, output: Outp
         raise CommandError(f"Unknown transition requested, available ones are: {fits}")
     chosen = fitting[0]
     client = node.create_client(ChangeState, f"{name}/change_state")
-    response = await client.call(ChangeState.Request(transition=chosen))
+    response = await client.call(ChangeState.Request(transition=chosen), timeout_sec=timeout)
     if not response.success:
         raise CommandError("Transitioning failed")
     output.item("Transitioning successful", {"name": name, "transition": chosen.label})
@@ -174,11 +207,13 @@ def known(node: Node, node_name: str) -> str:
     return name
 
 
-async def transitions(node: Node, name: str, *, every: bool = False) -> list[TransitionDescription]:
+async def transitions(
+    node: Node, name: str, *, every: bool = False, timeout: float = ANSWER_S
+) -> list[TransitionDescription]:
     """Return the transitions of a managed node."""
     service = "get_transition_graph" if every else "get_available_transitions"
     request = GetAvailableTransitions.Request()
-    response = await ask(node, name, service, GetAvailableTransitions, request)
+    response = await ask(node, name, service, GetAvailableTransitions, request, timeout)
     return list(response.available_transitions)
 
 
@@ -188,7 +223,8 @@ async def ask(
     service: str,
     srv_type: ServiceClass[RequestT, ResponseT],
     request: RequestT,
+    timeout: float,
 ) -> ResponseT:
     """Call a service that a managed node answers immediately."""
     client = node.create_client(srv_type, f"{name}/{service}")
-    return await client.call(request, timeout_sec=ANSWER_S)
+    return await client.call(request, timeout_sec=timeout)

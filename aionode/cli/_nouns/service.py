@@ -10,7 +10,12 @@ from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
 from aionode.cli._support.completion import name_argument, type_argument, values_parameters
 from aionode.cli._support.follow import Follower
-from aionode.cli._support.formatting import Printer, names_text
+from aionode.cli._support.formatting import (
+    Printer,
+    endpoint_record,
+    endpoint_text,
+    names_text,
+)
 from aionode.cli._support.nouns import SERVICE
 from aionode.cli._support.options import (
     clear_full_length,
@@ -52,20 +57,34 @@ command(
 add_type_and_find(service_command, SERVICE)
 
 
-@command(service_command, "info", name_argument("service"))
-async def info(node: Node, service_name: str, *, output: Output) -> None:
-    """Print the type of a service, and the number of its clients and servers.
+@command(
+    service_command,
+    "info",
+    name_argument("service"),
+    click.option(
+        "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
+    ),
+)
+async def info(node: Node, service_name: str, *, output: Output, verbose: bool = False) -> None:
+    """Print the type of a service, and its clients and servers.
 
     Raises:
         CommandError: the service does not exist.
     """
     name, types = SERVICE.name_and_types(node, service_name)
-    clients = len(lookup.endpoints(node, EndpointKind.CLIENT, name=name))
-    servers = len(lookup.endpoints(node, EndpointKind.SERVER, name=name))
-    output.item(
-        f"Type: {names_text(types)}\nClients count: {clients}\nServices count: {servers}",
-        {"name": name, "types": types, "clients": clients, "servers": servers},
-    )
+    clients = lookup.endpoints(node, EndpointKind.CLIENT, name=name)
+    servers = lookup.endpoints(node, EndpointKind.SERVER, name=name)
+    if output.json:
+        record: dict[str, Any] = {"name": name, "types": types}
+        for word, users in (("clients", clients), ("servers", servers)):
+            record[word] = list(map(endpoint_record, users)) if verbose else len(users)
+        output.item("", record)
+        return
+    output.text(f"Type: {names_text(types)}")
+    for word, users in (("Clients", clients), ("Services", servers)):
+        output.text(f"{word} count: {len(users)}")
+        for user in users if verbose else ():
+            output.text(f"{endpoint_text(user)}\n")
 
 
 @command(

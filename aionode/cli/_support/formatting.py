@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support.field_path import field_of
 from aionode.errors import CommandError
+from aionode.graph import SERVICE_KINDS
 from aionode.message import Message
 from aionode.message.conversion import Form, plain, plain_value
 from aionode.qos import HistoryPolicy
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Printer",
     "csv_line",
+    "endpoint_record",
     "endpoint_text",
     "names_text",
     "yaml_text",
@@ -181,16 +183,22 @@ def names_text(names: list[str]) -> str:
 
 
 def endpoint_text(endpoint: EndpointInfo) -> str:
-    """Return the details of a publisher or subscription, in ros2's layout."""
+    """Return the details of an endpoint of a topic or service, in ros2's layout.
+
+    A client or server is one endpoint, as over Zenoh.
+    """
     profile = endpoint.qos
+    is_service = endpoint.kind in SERVICE_KINDS
+    of, count = ("Service", ["Endpoint count: 1"]) if is_service else ("Topic", [])
     depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
     return "\n".join(
         (
             f"Node name: {endpoint.node.name}",
             f"Node namespace: {endpoint.node.namespace}",
-            f"Topic type: {endpoint.type_name}",
-            f"Topic type hash: {endpoint.type_hash}",
+            f"{of} type: {endpoint.type_name}",
+            f"{of} type hash: {endpoint.type_hash}",
             f"Endpoint type: {endpoint.kind.name}",
+            *count,
             f"GID: {'.'.join(f'{byte:02x}' for byte in endpoint.gid)}",
             "QoS profile:",
             f"  Reliability: {profile.reliability.name}",
@@ -202,3 +210,24 @@ def endpoint_text(endpoint: EndpointInfo) -> str:
             f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
         )
     )
+
+
+def endpoint_record(user: EndpointInfo) -> dict[str, Any]:
+    """Return the record of an endpoint; times are in nanoseconds."""
+    profile = user.qos
+    return {
+        "node": user.node.fully_qualified_name,
+        "type": user.type_name,
+        "type_hash": user.type_hash,
+        "gid": user.gid.hex(),
+        "qos": {
+            "reliability": profile.reliability.short_key,
+            "history": profile.history.short_key,
+            "depth": profile.depth,
+            "durability": profile.durability.short_key,
+            "lifespan_ns": profile.lifespan.nanoseconds,
+            "deadline_ns": profile.deadline.nanoseconds,
+            "liveliness": profile.liveliness.short_key,
+            "liveliness_lease_duration_ns": profile.liveliness_lease_duration.nanoseconds,
+        },
+    }

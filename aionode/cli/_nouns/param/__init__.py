@@ -22,7 +22,7 @@ from aionode.cli._nouns.param.text import (
 )
 from aionode.cli._support import lookup
 from aionode.cli._support.command import command
-from aionode.cli._support.completion import complete_of_node, name_argument
+from aionode.cli._support.completion import complete_names, complete_of_node, name_argument
 from aionode.cli._support.lookup import absolute
 from aionode.cli._support.options import hidden_option, positive
 from aionode.cli._support.yaml_messages import shortened
@@ -46,11 +46,20 @@ __all__ = [
     "list_parameters",
     "load",
     "param_command",
-    "set_parameter",
+    "set_parameters",
 ]
 
 ANSWER_S = 5.0
 """Timeout for the parameter services of a node, in seconds; normally they take milliseconds."""
+
+service_timeout_option = click.option(
+    "--service-timeout",
+    metavar="N",
+    type=positive,
+    default=ANSWER_S,
+    show_default=True,
+    help="Wait at most N seconds for the node's answers.",
+)
 
 timeout_option = click.option(
     "--timeout",
@@ -72,7 +81,12 @@ def param_command() -> None:
 
 @asynccontextmanager
 async def parameters_of(
-    node: Node, node_name: str, *, hidden: bool = False, timeout: float = 1.0
+    node: Node,
+    node_name: str,
+    *,
+    hidden: bool = False,
+    timeout: float = 1.0,
+    service_timeout: float = ANSWER_S,
 ) -> AsyncIterator[AsyncParameterClient]:
     """Yield a client for the parameters of a node.
 
@@ -81,6 +95,7 @@ async def parameters_of(
         node_name: Name of the other node.
         hidden: Whether it may be a hidden node.
         timeout: Maximum time to wait for the node and its services, in seconds.
+        service_timeout: Maximum time to wait for its answers, in seconds.
 
     Raises:
         CommandError: there is no such node, it has no parameter services, or it does not answer.
@@ -96,11 +111,11 @@ async def parameters_of(
                 f"Node '{name}' has no parameter services (none within {timeout:g} s); was it "
                 "created with start_parameter_services=False?"
             )
-        async with asyncio.timeout(ANSWER_S):
+        async with asyncio.timeout(service_timeout):
             yield client
     except TimeoutError as error:
         raise CommandError(
-            f"Node '{name}' did not answer within {ANSWER_S:g} s; is its event loop blocked?"
+            f"Node '{name}' did not answer within {service_timeout:g} s; is its event loop blocked?"
         ) from error
     finally:
         client.destroy()
@@ -150,7 +165,11 @@ async def names_of(node: Node, node_name: str) -> list[str]:
 
 node_argument = name_argument("node")
 parameter_argument = click.argument("parameter_name", shell_complete=complete_of_node(names_of))
-node_options = (hidden_option("--include-hidden-nodes", what="nodes"), timeout_option)
+node_options = (
+    hidden_option("--include-hidden-nodes", what="nodes"),
+    timeout_option,
+    service_timeout_option,
+)
 """Options of all commands."""
 
 
@@ -181,6 +200,7 @@ async def list_parameters(
     types: bool = False,
     hidden: bool = False,
     timeout: float = 1.0,
+    service_timeout: float = ANSWER_S,
 ) -> int:
     """List the parameters of one node, or of all.
 
@@ -195,15 +215,16 @@ async def list_parameters(
         names = [absolute(node_name)]
         await wait_for_node(node, names[0], hidden=hidden, timeout=timeout)
     else:
-        names = [
-            name
-            for name in dict.fromkeys(node_names(node, hidden=hidden))
-            if offers_parameters(node, name)
-        ]
+        names = nodes_with_parameters(node, hidden=hidden)
+    reach: dict[str, Any] = {
+        "hidden": hidden,
+        "timeout": timeout,
+        "service_timeout": service_timeout,
+    }
 
     async def ask(name: str) -> list[ParameterDescriptor] | AionodeError:
         try:
-            async with parameters_of(node, name, hidden=hidden, timeout=timeout) as client:
+            async with parameters_of(node, name, **reach) as client:
                 declared = (await client.list_parameters(list(prefixes))).names
                 return await client.describe_parameters(sorted(filter(fits, declared)))
         except AionodeError as error:
@@ -229,9 +250,13 @@ async def list_parameters(
     return status
 
 
-def offers_parameters(node: Node, name: str) -> bool:
-    """Return whether a node has parameter services now."""
-    return node.graph.count(EndpointKind.SERVER, f"{name}/list_parameters") > 0
+def nodes_with_parameters(node: Node, *, hidden: bool) -> list[str]:
+    """Return the names of the other nodes that have parameter services now."""
+    return [
+        name
+        for name in dict.fromkeys(node_names(node, hidden=hidden))
+        if node.graph.count(EndpointKind.SERVER, f"{name}/list_parameters") > 0
+    ]
 
 
 def pattern_from(pattern: str | None) -> Callable[[str], bool]:
@@ -256,82 +281,164 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
 @command(
     param_command,
     "get",
-    node_argument,
-    parameter_argument,
+    click.argument("node_name", metavar="[NODE_NAME]", shell_complete=complete_names("node")),
+    click.argument("parameter_names", nargs=-1, shell_complete=complete_of_node(names_of)),
     click.option("--hide-type", is_flag=True, help="Print only the value."),
     *node_options,
 )
 async def get(
     node: Node,
     node_name: str,
-    parameter_name: str,
+    parameter_names: Sequence[str],
     *,
     output: Output,
     hide_type: bool = False,
     **reach: Any,
-) -> None:
-    """Print the value of a parameter.
+) -> int:
+    """Print the values of parameters of a node, or of one parameter of all nodes.
+
+    A single name is that of a parameter, which is asked of every node.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: there is no such node or parameter.
     """
+    if not parameter_names:
+        return await get_everywhere(node, node_name, output=output, hide_type=hide_type, **reach)
     async with parameters_of(node, node_name, **reach) as client:
-        values = await client.get_parameters([parameter_name])
-        if not values:
-            raise await not_declared(client, [parameter_name])
-    (parameter,) = values
+        values = await client.get_parameters(parameter_names)
+        if len(values) < len(parameter_names):
+            raise await not_declared(client, parameter_names)
+    for parameter in values:
+        title = parameter.name if len(parameter_names) > 1 else ""
+        print_value(output, absolute(node_name), parameter, title, hide_type=hide_type)
+    return 0
+
+
+async def get_everywhere(
+    node: Node,
+    name: str,
+    *,
+    output: Output,
+    hide_type: bool,
+    hidden: bool = False,
+    **reach: Any,
+) -> int:
+    """Print the value of a parameter of each node that has it.
+
+    Returns:
+        The exit status: 1 if a node does not answer.
+
+    Raises:
+        CommandError: no node has it.
+    """
+    names = nodes_with_parameters(node, hidden=hidden)
+
+    async def ask(node_name: str) -> list[Parameter] | AionodeError:
+        try:
+            async with parameters_of(node, node_name, hidden=hidden, **reach) as client:
+                return await client.get_parameters([name])
+        except AionodeError as error:
+            return error
+
+    answers = await asyncio.gather(*map(ask, names))
+    status = 0
+    for node_name, answer in zip(names, answers, strict=True):
+        if isinstance(answer, AionodeError):
+            output.warn(str(answer))
+            status = 1
+            continue
+        for parameter in answer:
+            print_value(output, node_name, parameter, node_name, hide_type=hide_type)
+    if not any(answers):
+        if absolute(name) in node_names(node, hidden=True):
+            raise CommandError(
+                f"'{name}' is a node; 'aionode param list {name}' has its parameters"
+            )
+        raise CommandError(
+            f"Parameter '{name}' is set on none of {len(names)} nodes; 'aionode param list' has "
+            "the parameters of all of them"
+        )
+    return status
+
+
+def print_value(
+    output: Output, node_name: str, parameter: Parameter, title: str, *, hide_type: bool
+) -> None:
+    """Print the value of a parameter, below a title if there are several."""
     value = plain(parameter, as_numbers=output.json)
     label = LABELS[parameter.type_]
-    text = label if value is None else f"{label} {value}"
-    output.item(
-        str(value) if hide_type else text,
-        {
-            "node": absolute(node_name),
-            "name": parameter_name,
-            "type": TYPE_NAMES[parameter.type_],
-            "value": value,
-        },
-    )
+    text = str(value) if hide_type else label if value is None else f"{label} {value}"
+    if title:
+        text = f"{title}: {text}" if hide_type else f"{title}:\n  {text}"
+    kind = TYPE_NAMES[parameter.type_]
+    record = {"node": node_name, "name": parameter.name, "type": kind, "value": value}
+    output.item(text, record)
+
+
+def complete_pairs(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a parameter; nothing in the place of its value."""
+    given = ctx.params.get("pairs") or ()
+    return [] if len(given) % 2 else complete_of_node(names_of)(ctx, param, incomplete)
+
+
+def expect_pairs(options: dict[str, Any]) -> None:
+    """Make pairs of the names and values that are given in turn."""
+    given = options["pairs"]
+    if len(given) % 2:
+        raise click.UsageError(f"Parameter {given[-1]!r} has no value: give NAME VALUE for each.")
+    options["pairs"] = list(zip(given[::2], given[1::2], strict=True))
 
 
 @command(
     param_command,
     "set",
     node_argument,
-    parameter_argument,
-    click.argument("value"),
+    click.argument(
+        "pairs", metavar="NAME VALUE...", nargs=-1, required=True, shell_complete=complete_pairs
+    ),
+    click.option("--atomic", is_flag=True, help="Set all of them, or none if one is refused."),
     *node_options,
+    prepare=expect_pairs,
     context_settings={"ignore_unknown_options": True},
 )
-async def set_parameter(
+async def set_parameters(
     node: Node,
     node_name: str,
-    parameter_name: str,
-    value: str,
+    pairs: Sequence[tuple[str, str]],
     *,
     output: Output,
+    atomic: bool = False,
     **reach: Any,
 ) -> int:
-    """Set a parameter to a value in YAML.
+    """Set parameters to values in YAML: a name and a value for each.
 
     Returns:
         The exit status.
 
     Raises:
-        CommandError: there is no such node, or the value is not valid YAML.
+        CommandError: there is no such node, or a value is not valid YAML.
     """
     from aionode.parameter import Parameter
 
-    message = parameter_value(value)
-    parameter = Parameter.from_parameter_msg(message_of(parameter_name, message))
+    messages = [message_of(name, parameter_value(value)) for name, value in pairs]
+    parameters = list(map(Parameter.from_parameter_msg, messages))
+    where = {"node": absolute(node_name)}
     async with parameters_of(node, node_name, **reach) as client:
-        (result,) = await client.set_parameters([parameter])
-    return print_result(
-        output,
-        result,
-        ("Set parameter successful", "Setting parameter failed"),
-        {"node": absolute(node_name), "name": parameter_name},
-    )
+        if atomic:
+            result = await client.set_parameters_atomically(parameters)
+            words = ("Set parameters atomically successful", "Setting parameters atomically failed")
+            return print_result(output, result, words, {**where, "names": [n for n, _ in pairs]})
+        results = await client.set_parameters(parameters)
+    words = ("Set parameter successful", "Setting parameter failed")
+    status = 0
+    for (name, _), result in zip(pairs, results, strict=True):
+        title = f"{name}: " if len(pairs) > 1 else ""
+        titled = (title + words[0], title + words[1])
+        status |= print_result(output, result, titled, {**where, "name": name})
+    return status
 
 
 def parameter_value(text: str) -> Any:

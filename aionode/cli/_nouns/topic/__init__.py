@@ -14,7 +14,7 @@ from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
 from aionode.cli._support.completion import name_argument, values_parameters
 from aionode.cli._support.follow import Follower
-from aionode.cli._support.formatting import endpoint_text, names_text
+from aionode.cli._support.formatting import endpoint_record, endpoint_text, names_text
 from aionode.cli._support.nouns import TOPIC, with_types
 from aionode.cli._support.options import (
     count_option,
@@ -160,27 +160,6 @@ def info_record(
     for word, users in (("publishers", publishers), ("subscriptions", subscriptions)):
         record[word] = [endpoint_record(user) for user in users] if verbose else len(users)
     return record
-
-
-def endpoint_record(user: EndpointInfo) -> dict[str, Any]:
-    """Return the record of an endpoint; times are in nanoseconds."""
-    profile = user.qos
-    return {
-        "node": user.node.fully_qualified_name,
-        "type": user.type_name,
-        "type_hash": user.type_hash,
-        "gid": user.gid.hex(),
-        "qos": {
-            "reliability": profile.reliability.short_key,
-            "history": profile.history.short_key,
-            "depth": profile.depth,
-            "durability": profile.durability.short_key,
-            "lifespan_ns": profile.lifespan.nanoseconds,
-            "deadline_ns": profile.deadline.nanoseconds,
-            "liveliness": profile.liveliness.short_key,
-            "liveliness_lease_duration_ns": profile.liveliness_lease_duration.nanoseconds,
-        },
-    }
 
 
 # Publishing

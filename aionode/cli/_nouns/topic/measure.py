@@ -14,13 +14,14 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import click
 
 from aionode.cli._support.command import command
 from aionode.cli._support.completion import complete_names, name_argument
 from aionode.cli._support.follow import Follower, filter_from, wait_for_type
+from aionode.cli._support.nouns import TOPIC
 from aionode.cli._support.options import CommandT, filter_option, natural
 from aionode.errors import CommandError
 from aionode.message import fields, type_name
@@ -59,7 +60,9 @@ takes 0.1 s.
 
 QOS = qos_profile_sensor_data.replace(depth=DEPTH)
 
-HZ_HEADER = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
+HZ_HEADER: Final[tuple[str, ...]] = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
+
+BW_HEADER: Final[tuple[str, ...]] = ("topic", "bandwidth", "window", "mean", "min", "max")
 
 LEAST_FIRST = (5, 4, 3, 2)
 """The columns that a narrow terminal omits, least important first."""
@@ -84,13 +87,37 @@ def window_option(default: int) -> Callable[[CommandT], CommandT]:
     )
 
 
+names_argument = click.argument("topic_names", nargs=-1, shell_complete=complete_names("topic"))
+all_option = click.option("-a", "--all", "every", is_flag=True, help="Measure all topics of now.")
+
+
+def expect_names(options: dict[str, Any]) -> None:
+    """Check that there are names of topics, or that all are wanted."""
+    if options["every"] and options["topic_names"]:
+        raise click.UsageError("Give names of topics or --all, not both.")
+    if not options["every"] and not options["topic_names"]:
+        raise click.UsageError("Missing argument 'TOPIC_NAMES...'; --all measures all topics.")
+
+
+def wanted_topics(node: Node, given: Sequence[str], *, every: bool, output: Output) -> list[str]:
+    """Return the full names of the topics to measure, and say how many there are of all."""
+    if not every:
+        return list(dict.fromkeys(map(node.resolve_topic_name, given)))
+    names = sorted(TOPIC.types_by_name(node))
+    output.text(
+        f"Subscribing to all {len(names)} available topics..." if names else "No topics available"
+    )
+    return names
+
+
 # Rate
 
 
 @command(
     measuring,
     "hz",
-    click.argument("topic_names", nargs=-1, required=True, shell_complete=complete_names("topic")),
+    names_argument,
+    all_option,
     window_option(10_000),
     filter_option("Count"),
     click.option(
@@ -98,6 +125,7 @@ def window_option(default: int) -> Callable[[CommandT], CommandT]:
     ),
     interfaces=True,
     sim_time=True,
+    prepare=expect_names,
     endless=True,
     busy=True,
 )
@@ -106,6 +134,7 @@ async def hz(
     topic_names: Sequence[str],
     *,
     output: Output,
+    every: bool = False,
     window: int = 10_000,
     filter_text: str | None = None,
     wall_time: bool = False,
@@ -116,7 +145,7 @@ async def hz(
         CommandError: the type of a topic cannot be determined, or the filter is invalid.
     """
     fits = filter_from(filter_text)
-    names = [node.resolve_topic_name(name) for name in topic_names]
+    names = wanted_topics(node, topic_names, every=every, output=output)
     intervals = {name: Intervals(window) for name in names}
     meter = Meter(node, output)
 
@@ -126,21 +155,12 @@ async def hz(
         if intervals[name].arrive(arrival_ns(node, info, wall_time=wall_time)):
             output.text("time has reset, resetting counters")
 
-    async def subscribe(name: str) -> None:
-        msg_type = await wait_for_type(node, name, output, spinner=len(names) == 1)
-        if len(names) > 1 and not output.is_terminal:  # a terminal has it in the table
-            output.text(f"Subscribed to [{name}]")
-        meter.follow(msg_type, name, partial(on_message, name), raw=filter_text is None)
-
     if len(names) == 1:
-        await subscribe(names[0])
+        msg_type = await wait_for_type(node, names[0], output)
+        meter.follow(msg_type, names[0], partial(on_message, names[0]), raw=filter_text is None)
         await meter.report(partial(print_rate, output, names[0], intervals[names[0]]))
-        return
-    table = RateTable(intervals)
-    with output.live() if output.is_terminal else nullcontext() as update:
-        show = partial(print_rates, table, output, update)
-        # Concurrently: a topic without a publisher must not hold up the others.
-        await asyncio.gather(meter.report(show), *map(subscribe, names))
+    elif names:
+        await meter.report_table(RateTable(intervals), on_message, raw=filter_text is None)
 
 
 class Meter:
@@ -187,6 +207,28 @@ class Meter:
 
         self._node.create_timer(PRINT_PERIOD_S, tick, on_error=self._follower.fail)
         await self._follower.finished()
+
+    async def report_table(
+        self, table: Table, on_message: Callable[[str, Any, MessageInfo], None], *, raw: bool
+    ) -> None:
+        """Call `on_message` with the messages of several topics, and print a table of them.
+
+        Args:
+            table: It has a row for each topic.
+            on_message: Called with the name of the topic first.
+            raw: Whether messages are passed as bytes.
+        """
+
+        async def subscribe(name: str) -> None:
+            msg_type = await wait_for_type(self._node, name, self._output, spinner=False)
+            if not self._output.is_terminal:  # a terminal has it in the table
+                self._output.text(f"Subscribed to [{name}]")
+            self.follow(msg_type, name, partial(on_message, name), raw=raw)
+
+        with self._output.live() if self._output.is_terminal else nullcontext() as update:
+            show = partial(print_table, table, self._output, update)
+            # Concurrently: a topic without a publisher must not hold up the others.
+            await asyncio.gather(self.report(show), *map(subscribe, table.names))
 
     def _warn_of_dropped(self) -> None:
         dropped = sum(subscription.stats.dropped for subscription in self._subscriptions)
@@ -240,8 +282,31 @@ def hz_record(name: str, spread: Spread | None) -> dict[str, Any]:
     return {"topic": name, "rate_hz": spread.rate_hz, **spread_record(spread)}
 
 
+class Table(Protocol):
+    """Statistics of several topics."""
+
+    header: tuple[str, ...]
+
+    @property
+    def names(self) -> Sequence[str]:
+        """The topics."""
+        ...
+
+    def update(self) -> bool:
+        """Take over the last second's messages; return whether there is something to print."""
+        ...
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Return the cells of each topic, in the columns of `header`."""
+        ...
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return the record of each topic."""
+        ...
+
+
 class RateTable:
-    """The latest statistics of several topics, updated once a second.
+    """The latest rates of several topics, updated once a second.
 
     A topic is silent until its second message, and again once its next one is long overdue.
 
@@ -249,7 +314,10 @@ class RateTable:
         intervals: For each topic, the time between its messages.
     """
 
+    header = HZ_HEADER
+
     def __init__(self, intervals: dict[str, Intervals]) -> None:
+        self.names = list(intervals)
         self._intervals = intervals
         self._shown: dict[str, Spread | None] = dict.fromkeys(intervals)
         self._silent_s = dict.fromkeys(intervals, 0.0)
@@ -294,29 +362,31 @@ def print_rate(output: Output, name: str, intervals: Intervals) -> None:
         )
 
 
-def print_rates(
-    table: RateTable, output: Output, update: Callable[[Callable[[int], str]], None] | None
+def print_table(
+    table: Table, output: Output, update: Callable[[Callable[[int], str]], None] | None
 ) -> None:
     """Print new statistics of several topics, if there are any; `update` redraws a terminal."""
     changed = table.update()
     if update is not None:
-        update(partial(hz_table, table.rows()))
+        update(partial(fitted_table, table.header, table.rows()))
     elif changed:
-        output.text(hz_table(table.rows()))
+        output.text(fitted_table(table.header, table.rows()))
         if output.json:
             output.items([("", record) for record in table.records()])
 
 
-def hz_table(rows: list[tuple[str, ...]], width: int | None = None) -> str:
+def fitted_table(
+    header: tuple[str, ...], rows: list[tuple[str, ...]], width: int | None = None
+) -> str:
     """Return the statistics as a table, without columns that do not fit into `width`."""
-    kept = range(len(HZ_HEADER)) if width is None else columns_for(rows, width)
-    return table_text([[row[i] for i in kept] for row in (HZ_HEADER, *rows)])
+    kept = range(len(header)) if width is None else columns_for(header, rows, width)
+    return table_text([[row[i] for i in kept] for row in (header, *rows)])
 
 
-def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
+def columns_for(header: tuple[str, ...], rows: list[tuple[str, ...]], width: int) -> list[int]:
     """Return which columns fit into `width`; topic and rate are always kept."""
-    widths = [max(map(len, column)) for column in zip(HZ_HEADER, *rows, strict=True)]
-    kept = list(range(len(HZ_HEADER)))
+    widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]
+    kept = list(range(len(header)))
     for column in LEAST_FIRST:
         if sum(widths[i] + 3 for i in kept) - 3 < width:  # not the full width
             break
@@ -330,48 +400,110 @@ def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
 @command(
     measuring,
     "bw",
-    name_argument("topic"),
+    names_argument,
+    all_option,
     window_option(100),
     interfaces=True,
+    prepare=expect_names,
     endless=True,
     busy=True,
 )
-async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) -> None:
-    """Print the bandwidth of a topic, once a second.
+async def bw(
+    node: Node,
+    topic_names: Sequence[str],
+    *,
+    output: Output,
+    every: bool = False,
+    window: int = 100,
+) -> None:
+    """Print the bandwidth of topics, once a second.
 
     Raises:
-        CommandError: the type of the topic cannot be determined.
+        CommandError: the type of a topic cannot be determined.
     """
-    name = node.resolve_topic_name(topic_name)
-    msg_type = await wait_for_type(node, name, output)
-    bandwidth = Bandwidth(window)
+    names = wanted_topics(node, topic_names, every=every, output=output)
+    table = BandwidthTable(names, window, node.context.time_base.system_ns)
     meter = Meter(node, output)
+    if len(names) == 1:
+        msg_type = await wait_for_type(node, names[0], output)
+        meter.follow(msg_type, names[0], partial(table.arrive, names[0]), raw=True)
+        output.text(f"Subscribed to [{names[0]}]")
+        await meter.report(partial(print_bandwidth, output, table))
+    elif names:
+        await meter.report_table(table, table.arrive, raw=True)
 
-    def on_message(data: bytes, info: MessageInfo) -> None:
-        bandwidth.arrive(info["received_timestamp"], len(data))
 
-    meter.follow(msg_type, name, on_message, raw=True)
-    output.text(f"Subscribed to [{name}]")
+class BandwidthTable:
+    """The bandwidths of several topics.
 
-    def show() -> None:
-        rate = bandwidth.rate(node.context.time_base.system_ns())
-        if rate is None:
-            return
-        speed, mean, low, high = size_texts(rate.bytes_per_s, rate.mean, rate.low, rate.high)
-        output.item(
-            f"{speed}/s from {rate.count} messages\n"
-            f"\tMessage size mean: {mean} min: {low} max: {high}",
-            {
-                "topic": name,
-                "bytes_per_s": rate.bytes_per_s,
-                "mean_bytes": rate.mean,
-                "min_bytes": rate.low,
-                "max_bytes": rate.high,
-                "window": rate.count,
-            },
-        )
+    Args:
+        names: The topics.
+        window: The number of messages in the statistics.
+        now_ns: Returns the time.
+    """
 
-    await meter.report(show)
+    header = BW_HEADER
+
+    def __init__(self, names: Sequence[str], window: int, now_ns: Callable[[], int]) -> None:
+        self.names = list(names)
+        self._now_ns = now_ns
+        self._bandwidths = {name: Bandwidth(window) for name in names}
+        self.shown: dict[str, Throughput | None] = dict.fromkeys(names)
+
+    def arrive(self, name: str, data: bytes, info: MessageInfo) -> None:
+        """Count a message."""
+        self._bandwidths[name].arrive(info["received_timestamp"], len(data))
+
+    def update(self) -> bool:
+        """Compute the bandwidths of now; return whether there are any."""
+        now_ns = self._now_ns()
+        self.shown = {name: each.rate(now_ns) for name, each in self._bandwidths.items()}
+        return any(self.shown.values())
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Return a row for each topic, in the columns of `BW_HEADER`."""
+        return [
+            (name, *(SILENT if rate is None else bw_values(rate)))
+            for name, rate in self.shown.items()
+        ]
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return the record of each topic; the bandwidth of a silent one is 0."""
+        return [bw_record(name, rate) for name, rate in self.shown.items()]
+
+
+def bw_values(rate: Throughput) -> tuple[str, ...]:
+    """Return the bandwidth, the number of messages, and their sizes."""
+    speed, *sizes = size_texts(rate.bytes_per_s, rate.mean, rate.low, rate.high)
+    return f"{speed}/s", str(rate.count), *sizes
+
+
+def bw_record(name: str, rate: Throughput | None) -> dict[str, Any]:
+    """Return the record of one topic."""
+    if rate is None:
+        silent = dict.fromkeys(("mean_bytes", "min_bytes", "max_bytes"))
+        return {"topic": name, "bytes_per_s": 0.0, **silent, "window": 0}
+    return {
+        "topic": name,
+        "bytes_per_s": rate.bytes_per_s,
+        "mean_bytes": rate.mean,
+        "min_bytes": rate.low,
+        "max_bytes": rate.high,
+        "window": rate.count,
+    }
+
+
+def print_bandwidth(output: Output, table: BandwidthTable) -> None:
+    """Print the bandwidth of the only topic, unless it is silent."""
+    table.update()
+    for name, rate in table.shown.items():
+        if rate is not None:
+            speed, count, mean, low, high = bw_values(rate)
+            output.item(
+                f"{speed} from {count} messages\n"
+                f"\tMessage size mean: {mean} min: {low} max: {high}",
+                bw_record(name, rate),
+            )
 
 
 # Age
