@@ -12,8 +12,9 @@ from __future__ import annotations
 import asyncio
 import enum
 from collections import defaultdict
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
+
+from msgspec import Struct, structs
 
 from aionode import names, qos
 from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
@@ -65,8 +66,7 @@ OPPOSITES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class NodeInfo:
+class NodeInfo(Struct, frozen=True):
     """One node in the graph.
 
     Attributes:
@@ -95,8 +95,7 @@ class NodeInfo:
         return names.fully_qualified_name(self.namespace, self.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Offered:
+class Offered(Struct, frozen=True):
     """What there is in a graph, by name.
 
     Attributes:
@@ -127,8 +126,7 @@ class Mismatch(NamedTuple):
     policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EndpointInfo:
+class EndpointInfo(Struct, frozen=True, eq=False):
     """One publisher, subscription, server or client in the graph.
 
     Two are equal if their `gid` is equal, since that identifies an endpoint.
@@ -335,7 +333,7 @@ class Graph:
             for index in indices:
                 del index[endpoint]
         unreported = self.unreported.pop(endpoint, None)
-        object.__setattr__(endpoint, "gid", gid)  # frozen for everyone else
+        structs.force_setattr(endpoint, "gid", gid)  # frozen for everyone else
         if unreported is not None:
             self.unreported[endpoint] = unreported
         if is_known:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import ctypes
-import dataclasses
 import math
 import os
 import random
@@ -19,6 +18,8 @@ import uuid
 import weakref
 from collections import Counter
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
+
+from msgspec import structs
 
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode._process.concurrency import spin_before_blocking, to_the_end
@@ -615,7 +616,7 @@ class Context:
             gid=b"",
         )
         gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
-        return dataclasses.replace(endpoint, gid=gid)
+        return structs.replace(endpoint, gid=gid)
 
 
 def openings() -> int:

@@ -63,7 +63,7 @@ ONE: Final = rf"(?:(?i:{WORD})|{SYMBOL})"
 EACH: Final = rf"(?:\({ONE}(?:[/·*]{ONE})*\)(?:[²³]|\^\d)|{ONE})"
 UNIT: Final = rf"{EACH}(?:(?: per |[/·*]){EACH})*"
 
-SAID: Final = re.compile(rf"(?:\b[Ii]n +|(?<!\w)[\[(])({UNIT})(?![\w/²³^·])(?= and ({UNIT})\b)?")
+SAID: Final = rf"(?:\b[Ii]n +|(?<!\w)[\[(])({UNIT})(?![\w/²³^·])(?= and ({UNIT})\b)?"
 """A unit as comments give it: ``in m/s``, ``[rad]`` or ``(meters)``; a second one after ``and``."""
 
 
@@ -86,7 +86,7 @@ def units(cls: type[Message]) -> dict[str, str]:
 
 def unit_of(text: str) -> str | None:
     """Return the only unit that a text names; None if there is none, or more than one."""
-    named: set[Any] = {part for said in SAID.finditer(text) for part in said.groups() if part}
+    named: set[Any] = {part for said in re.finditer(SAID, text) for part in said.groups() if part}
     symbols = {symbol(part) for part in named}
     return symbols.pop() if len(symbols) == 1 else None
 

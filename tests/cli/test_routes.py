@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
 import pytest
 
 from aionode import DurabilityPolicy, Node, QoSProfile
@@ -45,7 +45,7 @@ def test_linked_processes_use_the_link() -> None:
 def test_what_is_kept_for_late_subscriptions_goes_by_zenoh() -> None:
     """Even if the processes are linked."""
     profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    kept = dataclasses.replace(TALKER, qos=profile)
+    kept = msgspec.structs.replace(TALKER, qos=profile)
 
     (pair,) = pairs_of([kept, LISTENER], LinkStatus(set(), {frozenset("ab")}))
 

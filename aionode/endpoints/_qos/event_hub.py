@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any
+
+from msgspec import structs
 
 from aionode.endpoints.core.callback_runner import accepts, consume
 from aionode.endpoints.core.entity import Entity
@@ -179,8 +180,8 @@ class EventHub:
 def since_creation(event: Any) -> Any:
     """Return an event in which each change is replaced by its total, counted since creation."""
     changes = {
-        field.name: getattr(event, field.name.removesuffix("_change"))
-        for field in dataclasses.fields(event)
-        if field.name.endswith("_change")
+        name: getattr(event, name.removesuffix("_change"))
+        for name in event.__struct_fields__
+        if name.endswith("_change")
     }
-    return dataclasses.replace(event, **changes)
+    return structs.replace(event, **changes)

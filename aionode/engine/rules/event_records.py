@@ -6,8 +6,9 @@ was created.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from aionode.qos import QoSPolicyKind
 
@@ -33,8 +34,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class QoSOfferedDeadlineMissedInfo:
+class QoSOfferedDeadlineMissedInfo(Struct, frozen=True):
     """A publisher did not publish within its deadline.
 
     Attributes:
@@ -46,8 +46,7 @@ class QoSOfferedDeadlineMissedInfo:
     total_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class QoSRequestedDeadlineMissedInfo:
+class QoSRequestedDeadlineMissedInfo(Struct, frozen=True):
     """A subscription did not receive anything within its deadline.
 
     Attributes:
@@ -59,8 +58,7 @@ class QoSRequestedDeadlineMissedInfo:
     total_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class QoSLivelinessLostInfo:
+class QoSLivelinessLostInfo(Struct, frozen=True):
     """A publisher with liveliness MANUAL_BY_TOPIC did not assert it within its lease.
 
     Attributes:
@@ -72,8 +70,7 @@ class QoSLivelinessLostInfo:
     total_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class QoSLivelinessChangedInfo:
+class QoSLivelinessChangedInfo(Struct, frozen=True):
     """A publisher of the topic became alive, lost its liveliness, or left.
 
     Attributes:
@@ -89,8 +86,7 @@ class QoSLivelinessChangedInfo:
     not_alive_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class QoSMessageLostInfo:
+class QoSMessageLostInfo(Struct, frozen=True):
     """Gaps in the sequence numbers of a publisher show lost messages.
 
     Attributes:
@@ -102,8 +98,7 @@ class QoSMessageLostInfo:
     total_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class QoSRequestedIncompatibleQoSInfo:
+class QoSRequestedIncompatibleQoSInfo(Struct, frozen=True):
     """An endpoint with incompatible QoS appeared.
 
     Attributes:
@@ -120,8 +115,7 @@ class QoSRequestedIncompatibleQoSInfo:
 QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 
 
-@dataclass(frozen=True, slots=True)
-class IncompatibleTypeInfo:
+class IncompatibleTypeInfo(Struct, frozen=True):
     """An endpoint appeared with another type, or another definition of the same type.
 
     Attributes:
@@ -133,8 +127,7 @@ class IncompatibleTypeInfo:
     total_count_change: int
 
 
-@dataclass(frozen=True, slots=True)
-class MatchedInfo:
+class MatchedInfo(Struct, frozen=True):
     """A counterpart was matched, or left.
 
     Attributes:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 import sys
 from collections import defaultdict
-from dataclasses import replace
 from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from aionode.engine.transport.link._manager import LinkManager
 from aionode.engine.transport.link._protocol import Open, Opened, Switched
