@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import msgspec
 
-from tests.faults.motion.words import Handed, Wheel
+from tests.faults.motion.words import Handed, Mover, Wheel
 from tests.faults.roles import Role
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ class Motion(msgspec.Struct, frozen=True):
             )
         match switch:
             case "lease":
-                mover = msgspec.structs.replace(mover, asks="publisher")
+                mover = without_lease(mover)
             case "silence":
                 wheel = msgspec.structs.replace(wheel, silence_sec=0.0)
             case "lost":
@@ -187,6 +187,13 @@ class Motion(msgspec.Struct, frozen=True):
                 mover = msgspec.structs.replace(mover, old_signals=True)
         role = msgspec.structs.replace(self.mover, mover=mover)
         return msgspec.structs.replace(self, mover=role, wheel=wheel, off=switch)
+
+
+def without_lease(mover: Mover) -> Mover:
+    """Return a mover that no lease stops."""
+    if mover.asks == "policy":  # an actor has always one
+        return msgspec.structs.replace(mover, ttl_sec=60.0)
+    return msgspec.structs.replace(mover, asks="publisher")
 
 
 def stopped(

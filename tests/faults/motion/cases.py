@@ -39,6 +39,9 @@ __all__ = ["motions"]
 TTL_S = 0.3
 SILENCE_S = 0.3
 LOST_S = 3.0
+CHUNK_S = 0.5
+"""How long the chunks of a policy last: see `tests.faults.motion.policy`."""
+
 LONG_TTL_S = 5.0
 """The time to live of a lease that is to be stopped by something else."""
 
@@ -232,6 +235,45 @@ def leases_and_silence(place: Place) -> Iterator[Motion]:
                 "limit_s": SILENCE_S,
                 **options,
             },
+        )
+
+
+def policies(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the wheels of a policy whose chunks an actor sends."""
+    who, lease = "a policy with chunks of 0.5 s", "the lease of its actor, after its chunk"
+    promised: dict[str, Any] = {"wheel": TOPIC, "switches": ("lease",), "limit_s": CHUNK_S + TTL_S}
+    for goes, trouble, seconds in (
+        ("hangs for 5 s", "hang", 5.0),
+        ("computes in Python for 5 s", "think", 5.0),
+        ("takes 1.5 s for each chunk from now on", "slow", 1.5),
+        ("sees nothing any more", "blind", 0.0),
+    ):
+        yield case(
+            place,
+            who,
+            goes,
+            lease,
+            mover=mover(asks="policy"),
+            strike=run_into(trouble, seconds),
+            lasts_s=seconds,
+            **promised,
+        )
+    for goes, strike, seconds in (
+        ("is killed", killed, 0.0),
+        ("is frozen 5 s", frozen(5.0), 5.0),
+    ):
+        yield case(
+            place,
+            who,
+            goes,
+            "the lease of its actor, on_silence at the wheels",
+            mover=mover(asks="policy"),
+            wheel=WATCHFUL,
+            strike=strike,
+            switches=("silence",),
+            limit_s=SILENCE_S,
+            lasts_s=seconds,
+            ends=strike is killed,
         )
 
 
@@ -682,6 +724,7 @@ def motions() -> list[Motion]:
     places = [linked(way) for way in ("link", "Zenoh", "router")]
     return [
         *(motion for place in places for kind in kinds for motion in kind(place)),
+        *policies(places[0]),
         *limits(places[0]),
         *gateways(),
         *assistants(),

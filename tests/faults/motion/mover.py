@@ -1,7 +1,8 @@
 """The program of a process that asks for motion: ``python -m tests.faults.motion.mover ROLE``.
 
 A line ``move`` on stdin has it begin, or begin again; each other line is a trouble for it:
-``fail``, ``exit``, ``sleep SECONDS`` and ``compute SECONDS``.
+``fail``, ``exit``, ``sleep SECONDS`` and ``compute SECONDS``; of a policy, see
+`tests.faults.motion.policy`.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from aionode.endpoints.lease import CommandLease
 from aionode.errors import LeaseExpiredError
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.test_msgs.action import Fibonacci
+from tests.faults.motion.policy import Policy, compute
 from tests.faults.motion.wheels import command, profile
 from tests.faults.process import Reporter
 from tests.faults.roles import Role
@@ -42,8 +44,11 @@ class MoverNode(Node):
         self.reporter = reporter
         self.client: ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback] | None
         self.publisher: Publisher[Twist] | None = None
+        self.policy: Policy | None = None
         if mover.asks in {"goal", "goal left"}:
             self.client = self.create_action_client(Fibonacci, mover.topic)
+        elif mover.asks == "policy":
+            self.policy = Policy(self, mover)
         else:
             self.publisher = self.create_publisher(Twist, mover.topic, profile(mover))
         self.begin = asyncio.Event()
@@ -67,6 +72,8 @@ class MoverNode(Node):
             self.begin.set()
         elif word in troubles:
             self.create_timer(0.0, once(troubles[word]))
+        elif self.policy is not None and word in self.policy.troubles:
+            self.policy.troubles[word](float(seconds))
         else:
             asyncio.get_running_loop().remove_reader(sys.stdin)
 
@@ -93,6 +100,9 @@ class MoverNode(Node):
                     self.publisher.publish(Twist())
             case "goal" | "goal left":
                 await self.send_goals()
+            case "policy":
+                assert self.policy is not None
+                await self.policy.move()
 
     async def publish(self) -> None:
         """Publish commands."""
@@ -144,13 +154,6 @@ class MoverNode(Node):
 def fail() -> None:
     """Fail."""
     raise RuntimeError("the sensor is broken")
-
-
-def compute(seconds: float) -> None:
-    """Hold the processor and the GIL."""
-    ends_s = time.monotonic() + seconds
-    while time.monotonic() < ends_s:
-        pass
 
 
 def once(callback: Callable[[], Any]) -> Callable[[], Any]:
