@@ -286,6 +286,8 @@ class CommandLease(Generic[MsgT]):
             if self._refusal is not None or self._state is not State.OPEN:
                 raise self._refused()
             self._is_publishing = True
+            # The sign of life of a holder that is frozen in the middle is as old as its command.
+            at_ns = self._time_base.steady_ns()
             try:
                 self._publisher._publish_leased(msg)
             finally:
@@ -293,7 +295,7 @@ class CommandLease(Generic[MsgT]):
                 self._end_if_refused()
             if self._silence is not None:
                 is_first = self._silence.left_ns() is None
-                self._silence.note()
+                self._silence.note(at_ns)
                 if is_first:
                     watch.wake()
 

@@ -197,6 +197,40 @@ async def test_a_command_that_comes_too_late_is_not_sent(robot: Robot) -> None:
     assert await robot.took() == [1, 0]
 
 
+class FreezingClock(ManualClock):
+    """Time in which a process is frozen once, in the middle of what reads the system time.
+
+    Attributes:
+        freezes_s: For how long, at the next reading.
+    """
+
+    freezes_s = 0.0
+
+    def system_ns(self) -> int:
+        """Return the time before the freeze."""
+        now_ns, seconds, self.freezes_s = super().system_ns(), self.freezes_s, 0.0
+        self.stall(seconds)
+        return now_ns
+
+
+async def test_a_holder_that_is_frozen_while_it_publishes_loses_the_lease() -> None:
+    """Its command is from before, and so is its sign of life: no other one may follow."""
+    clock = FreezingClock()
+    async with local_context(clock=clock) as context, Node("commander", context=context) as node:
+        robot = Robot(clock, context, node)
+        async with robot.wheels:
+
+            async def body(lease: CommandLease[Int8]) -> None:
+                clock.freezes_s = 5.0
+                lease.publish(Int8(data=1))  # which notes the time of the message
+                assert not lease.held
+                lease.publish(Int8(data=2))
+
+            with pytest.raises(LeaseExpiredError):
+                await hold(robot.speed, body)
+            assert await robot.took() == [1, 0]
+
+
 async def test_a_holder_that_swallows_the_refusal_is_cancelled(robot: Robot) -> None:
     """Its block ends at the next await."""
 
