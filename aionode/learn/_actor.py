@@ -124,11 +124,12 @@ class HoldingLease:
         """
         if self._has_expired:
             raise self._expired()
+        ends_ns = self._clock.now_ns() + self._ttl_ns
         self._publisher.publish(message)
         self._last = message
         if self._alarm is not None:
             self._alarm.cancel()
-        self._alarm = self._clock.call_at(self._clock.now_ns() + self._ttl_ns, self._expire)
+        self._alarm = self._clock.call_at(ends_ns, self._expire)
 
     def _expire(self) -> None:
         self._has_expired = True
@@ -286,6 +287,23 @@ class Actor:
                 f"a chunk of {len(rows)} actions was dropped: its last one was over {over_s:.3f} s "
                 "ago"
             )
+        self._send()
+
+    def send(self, action: npt.ArrayLike) -> None:
+        """Send one action now, in place of what was planned: for a loop that has its own pace.
+
+        Args:
+            action: The numbers of the contract's actions in their order; limits clamp them.
+
+        Raises:
+            ValueError: they are not as many, or not finite.
+            LeaseExpiredError: the robot was stopped (a TimeoutError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        (row,) = self._rows(np.asarray(action, np.float64)[np.newaxis])
+        if self._refusal is not None:
+            raise self._refusal
+        self._plan.put_now(row, self._clock.now_ns())
         self._send()
 
     def left_over(self, since: Time | None = None) -> Numbers:

@@ -130,6 +130,11 @@ class ActionPlan:
         share = (time_ns - before_ns) / (after_ns - before_ns)
         return (1 - share) * before + share * values
 
+    def put_now(self, values: Numbers, now_ns: int) -> None:
+        """Plan one action for now, in place of everything that was planned."""
+        inside = np.clip(values, self._lower, self._upper)
+        self._planned = [Planned(now_ns, inside, bool((inside != values).any()))]
+
     def take(self, now_ns: int) -> Planned | None:
         """Remove and return the action to be sent now; None if there is none.
 

@@ -26,7 +26,7 @@ from aionode.errors import (
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.learn import Actor, Contract
-from aionode.testing import ManualClock, local_context
+from aionode.testing import ManualClock, local_context, settle
 
 FPS = 30
 LEASE_SEC = 0.2
@@ -357,6 +357,17 @@ async def test_a_chunk_of_another_shape_is_refused(robot: Robot) -> None:
     async with contract_of().act(robot.node) as actor:
         with pytest.raises(ValueError, match=r"shape is \(1, 2\); a row of 1 numbers .*angular.z"):
             actor.plan([[1.0, 2.0]], robot.clock.now())
+
+
+async def test_an_action_may_be_sent_now(robot: Robot) -> None:
+    """By a loop that has a pace of its own, however fast it is."""
+    async with contract_of().act(robot.node) as actor:
+        for value in (1.0, 1.5, 9.0):
+            actor.send([value])
+            await robot.clock.advance(0.001)
+        assert (actor.stats.sent, actor.stats.clamped) == (3, 1)
+    await settle()
+    assert [value for _, value in robot.got] == [1.0, 1.5, 2.0, 0.0]
 
 
 async def test_what_is_left_over_answers_the_observation(robot: Robot) -> None:
