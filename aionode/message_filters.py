@@ -25,13 +25,15 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from aionode.clock import ClockType, MachineTime, Time
+from aionode.engine.causes import CAUSES, add_cause
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+    from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Sequence
 
     from aionode.endpoints.subscription import Subscription
+    from aionode.engine.causes import Run
     from aionode.message import Message
     from aionode.node import Node
 
@@ -378,8 +380,15 @@ class Synchronizer(SimpleFilter):
         """Add a message of an input."""
         stamp = self._Synchronizer__stamps.of(msg)
         if stamp is not None:
-            for messages in self._Synchronizer__matcher.add(index, stamp.nanoseconds, msg):
-                self.signalMessage(*messages)
+            arrived = (msg, CAUSES.get())
+            for pairs in self._Synchronizer__matcher.add(index, stamp.nanoseconds, arrived):
+                act_for(pairs)
+                self.signalMessage(*(message for message, _ in pairs))
+
+
+def act_for(pairs: Iterable[tuple[Any, tuple[Run, ...]]]) -> None:
+    """Have what is sent from now on be caused by the runs that brought several messages."""
+    add_cause(*dict.fromkeys(run for _, runs in pairs for run in runs))
 
 
 class TimeSynchronizer(Synchronizer):
@@ -438,7 +447,7 @@ class Synchronized:
         self._subscriptions = subscriptions
         self._matcher = matcher
         self._stamps = stamps
-        self._complete: deque[tuple[Any, ...]] = deque()
+        self._complete: deque[tuple[tuple[Any, tuple[Run, ...]], ...]] = deque()
         self._ended = False
 
     @property
@@ -456,14 +465,16 @@ class Synchronized:
             if self._ended:
                 raise StopAsyncIteration
             await self._receive()
-        return self._complete.popleft()
+        pairs = self._complete.popleft()
+        act_for(pairs)
+        return tuple(message for message, _ in pairs)
 
     async def _receive(self) -> None:
         """Wait for the next message of any subscription."""
         try:
             async with asyncio.TaskGroup() as group:
                 receiving = [
-                    group.create_task(subscription.receive())
+                    group.create_task(received(subscription))
                     for subscription in self._subscriptions
                 ]
                 try:
@@ -477,10 +488,15 @@ class Synchronized:
         except* EntityDestroyedError:
             self._ended = True
 
-    def _take(self, index: int, msg: Any) -> None:
-        stamp = self._stamps.of(msg)
+    def _take(self, index: int, pair: tuple[Any, tuple[Run, ...]]) -> None:
+        stamp = self._stamps.of(pair[0])
         if stamp is not None:
-            self._complete.extend(self._matcher.add(index, stamp.nanoseconds, msg))
+            self._complete.extend(self._matcher.add(index, stamp.nanoseconds, pair))
+
+
+async def received(subscription: Subscription[Any]) -> tuple[Any, tuple[Run, ...]]:
+    """Return the next message of a subscription, with the run of having read it."""
+    return await subscription.receive(), CAUSES.get()[-1:]
 
 
 @overload

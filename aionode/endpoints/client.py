@@ -10,6 +10,7 @@ from aionode.endpoints.core.entity import EndStage
 from aionode.endpoints.core.future import Futures, asks
 from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import ClientStats
+from aionode.engine.causes import Party, Run, take
 from aionode.engine.rules.service_events import REQUEST_SENT, RESPONSE_RECEIVED
 from aionode.engine.transport.base import SampleInfo
 from aionode.errors import (
@@ -17,6 +18,7 @@ from aionode.errors import (
     EntityDestroyedError,
     MessageError,
     RequestTimeoutError,
+    ServiceError,
     ServiceUnavailableError,
     silence,
 )
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
     from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.engine.transport.base import Call, Requester
-    from aionode.errors import ServiceError
 
 __all__ = ["Client", "Exchange"]
 
@@ -65,6 +66,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._futures = Futures(self)
         self._warned = False
         self._has_told_caveat = False
+        self._party = Party.of(self._endpoint)
 
     def __repr__(self) -> str:
         return (
@@ -191,7 +193,19 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             end = self._end_of_wait()
             raise end from end.__cause__
         finally:
+            self._note_answer(exchange)
             exchange.cancel()
+
+    def _note_answer(self, exchange: Exchange) -> None:
+        """Have what the current task sends from now on be caused by an answer too."""
+        answer = exchange.answer
+        if self._causes is None or not answer.done() or answer.cancelled():
+            return
+        error = answer.exception()
+        if error is None or type(error) is ServiceError:  # the server has answered
+            now_ns = perf_ns()
+            gid = self._party.gid
+            take(Run(self._party, "response", gid, exchange.sequence, now_ns, now_ns))
 
     def _begin(self, request: RequestT) -> Exchange:
         """Send `request` to the servers matched now, and return the pending exchange.
@@ -223,6 +237,9 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         except BaseException:
             exchange.cancel()
             raise
+        exchange.sequence = sample_info.sequence
+        if self._causes is not None:
+            self._causes.note("request", self._party, sample_info.sequence)
         if self._introspects and not self._is_internal(request):
             self._introspect(request, sample_info, exchange)
         return exchange
@@ -293,12 +310,14 @@ class Exchange:
             cancels it too, unless it is shielded by `asyncio.shield`.
         calls: The pending request in each transport.
         open: How many of `calls` may still answer.
+        sequence: The number of the request.
     """
 
     def __init__(self, service: str, servers: int, answers: set[asyncio.Future[Any]]) -> None:
         self.answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         self.calls: list[Call] = []
         self.open = 0
+        self.sequence = 0
         self._service = service
         self._servers = servers
         self._answers = answers

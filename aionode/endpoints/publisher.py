@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from functools import partial
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.endpoints._qos.event_hub import is_limited
-from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
+from aionode.endpoints._qos.publisher_monitor import PublisherMonitor
 from aionode.endpoints.core.endpoint import Endpoint
 from aionode.endpoints.core.entity import EndStage
+from aionode.endpoints.core.noting_writer import NotingWriter
 from aionode.endpoints.lease import CommandLease
 from aionode.endpoints.stats import PublisherStats
+from aionode.engine.causes import Party
 from aionode.engine.transport.base import Writer
 from aionode.errors import (
     EntityDestroyedError,
@@ -99,9 +102,14 @@ class Publisher(Endpoint, Generic[MsgT]):
         self.stats = PublisherStats(writers, self._matched)
         # The tasks in `drain`, and whether `_close` cancelled them.
         self._draining: dict[asyncio.Task[Any], bool] = {}
-        self._signs: tuple[Writer, ...] = ()
+        notes: list[Callable[[int], None]] = []
         if self._monitor is not None and self._monitor.needs_signs:
-            self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
+            notes.append(self._monitor.note_message)
+        if self._causes is not None:
+            notes.append(partial(self._causes.note, "message", Party.of(self._endpoint)))
+        self._noting: tuple[Writer, ...] = ()
+        if notes:
+            self._noting = (NotingWriter(writers, self._check, notes),)
         self._leave_out_placeholders()
         for writer in writers:
             writer.when_replaced(self._leave_out_placeholders)
@@ -109,7 +117,7 @@ class Publisher(Endpoint, Generic[MsgT]):
     def _leave_out_placeholders(self) -> None:
         """Send messages only to writers that are not placeholders."""
         ready = tuple(writer for writer in self._all_writers if not writer.is_placeholder)
-        self._ready_writers: tuple[Writer, ...] = ready + self._signs
+        self._ready_writers: tuple[Writer, ...] = ready + self._noting
         if self._lease is None:
             self._writers: tuple[Writer, ...] = self._ready_writers
         else:

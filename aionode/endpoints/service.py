@@ -18,6 +18,7 @@ from aionode.endpoints.core.endpoint import report_heavy
 from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.causes import note_end
 from aionode.engine.rules.service_events import REQUEST_RECEIVED, RESPONSE_SENT
 from aionode.message import Message, type_name
 from aionode.message.memory_size import memory_size
@@ -98,6 +99,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._runner = setup.callbacks.make_runner(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
+        self._party = self._runner.party_of(self._endpoint)
 
     def __repr__(self) -> str:
         return (
@@ -139,7 +141,11 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             return None
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        self._client_gid = request.sample_info.gid
+        self._client_gid = gid = request.sample_info.gid
+        if self._causes is not None:
+            self._causes.begin(
+                self._party, "request", gid, request.sample_info.sequence, entered_ns
+            )
         if self._introspects and not self._is_internal(request.message):
             self._introspection.publish(REQUEST_RECEIVED, request.sample_info, request.message)
         try:
@@ -149,6 +155,8 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
                 entered = self._runner.enter(request.message)
             if is_unfinished(entered):
                 return self._finish(request, entered)
+            if self._causes is not None:
+                note_end(perf_ns())
             self._reply(request, entered)
         except Exception as error:  # noqa: BLE001  # see `_fail`
             self._fail(request, error)
@@ -166,6 +174,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
     def _fail(self, request: Request, error: Exception) -> None:
         """Send `error` to the client, then apply `on_error`."""
         request.fail(type(error).__name__, str(error))
+        self._note_answer(request)
         self._runner.fail(error)
 
     def _reply(self, request: Request, response: Any) -> None:
@@ -176,8 +185,15 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
         request.reply(response)
+        self._note_answer(request)
         if self._introspects and not self._is_internal(request.message):
             self._introspection.publish(RESPONSE_SENT, request.sample_info, response)
+
+    def _note_answer(self, request: Request) -> None:
+        """Note what caused an answer; it is identified like its request."""
+        if self._causes is not None:
+            gid, sequence = request.sample_info.gid, request.sample_info.sequence
+            self._causes.note("response", self._party, sequence, gid=gid)
 
     def _close(self) -> None:
         """Withdraw the service, and drop the queued requests."""

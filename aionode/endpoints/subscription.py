@@ -24,6 +24,7 @@ from aionode.endpoints.core.callback_runner import (
 from aionode.endpoints.core.endpoint import Endpoint, report_heavy
 from aionode.endpoints.core.silence_watch import Silence, SilenceWatch
 from aionode.endpoints.core.subscription_reader import (
+    CausalReader,
     DirectReader,
     MessageInfo,
     SubscriptionReader,
@@ -106,12 +107,16 @@ class Subscription(Endpoint, Generic[ItemT]):
             self._runner = setup.callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
-        if take is None:
-            self._reader = SubscriptionReader(
-                setup.endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
+        self._reader: SubscriptionReader
+        options: dict[str, bool] = {"raw": raw, "wants_info": wants == 2}
+        if take is not None:
+            self._reader = DirectReader(setup.endpoint, self.stats, time_base, take)
+        elif setup.causes is not None:
+            self._reader = CausalReader(
+                setup.endpoint, self.stats, time_base, log=setup.causes, **options
             )
         else:
-            self._reader = DirectReader(setup.endpoint, self.stats, time_base, take)
+            self._reader = SubscriptionReader(setup.endpoint, self.stats, time_base, **options)
         size_of = len if raw else memory_size(msg_type)
         if size_of is not None:
             self._reader.weigh_messages(
@@ -286,6 +291,8 @@ class Subscription(Endpoint, Generic[ItemT]):
         entered_ns, item = self._reader.pop()
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
+        if isinstance(self._reader, CausalReader):
+            item = self._reader.taken(entered_ns, item)
         taken: ItemT = item
         return taken
 
@@ -313,6 +320,8 @@ class Subscription(Endpoint, Generic[ItemT]):
         if self._reader.wants_info:
             with_info = self._runner.receive
             receive = lambda entered_ns, item: with_info(entered_ns, *item)  # noqa: E731
+        if isinstance(self._reader, CausalReader):
+            receive = self._reader.noting(receive)
         if self._silence_watch is not None:
             self._silence_watch.start()
             return self._silence_watch.consume(receive, self._concurrent)

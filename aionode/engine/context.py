@@ -26,6 +26,7 @@ from aionode._process.concurrency import spin_before_blocking, to_the_end
 from aionode._process.sudden_end import SENDS
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime, perf_ns
+from aionode.engine.causes import CauseLog
 from aionode.engine.loop_affinity import LoopAffinity
 from aionode.engine.reports.duplicates import DuplicateReport
 from aionode.engine.reports.mismatches import MismatchReport
@@ -59,6 +60,9 @@ TRANSPORT_VARIABLE = "AIONODE_TRANSPORT"
 LINK_VARIABLE = "AIONODE_LINK"
 LINK_SETTINGS = {"on": True, "off": False, "": True}
 
+CAUSES_VARIABLE = "AIONODE_CAUSES"
+CAUSES_SETTINGS = {"1": True, "0": False, "": False}
+
 
 def transport_of(environ: Mapping[str, str]) -> str:
     """Return the transport selected by the environment; zenoh by default.
@@ -88,6 +92,20 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
     from aionode.engine.transport.link import available
 
     return available()
+
+
+def wants_causes(asked: bool | None, environ: Mapping[str, str]) -> bool:
+    """Return whether to keep what caused each message.
+
+    Raises:
+        ConfigurationError: the environment variable is neither 1 nor 0.
+    """
+    if asked is not None:
+        return asked
+    word = environ.get(CAUSES_VARIABLE, "")
+    if word not in CAUSES_SETTINGS:
+        raise ConfigurationError(CAUSES_VARIABLE, word, "use 1 or 0")
+    return CAUSES_SETTINGS[word]
 
 
 class ContextNode(Protocol):
@@ -138,6 +156,8 @@ class Context:
         seed: For tests without a network: a seed for the ids of the context, its endpoints and its
             goals, which makes them the same in every run. Callbacks that block the loop are not
             reported then, as this depends on the machine. By default ids are unique.
+        causes: Whether to keep what caused each message, for ``aionode why`` and `observe.why`;
+            defaults to ``AIONODE_CAUSES`` (``1`` or ``0``), or no, as it makes messages dearer.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
@@ -147,6 +167,7 @@ class Context:
         time_base: The source of time.
         participant: The id of this context in the graph, in hexadecimal.
         seed: The seed of its ids; None if they are unique.
+        causes: What caused the latest messages; None if that is not kept.
 
     Raises:
         ConfigurationError: an argument, or the environment variable used instead, is invalid (a
@@ -180,6 +201,7 @@ class Context:
         queue_bytes: int | None = None,
         graph_bytes: int | None = None,
         seed: int | None = None,
+        causes: bool | None = None,
     ) -> None:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
@@ -195,6 +217,7 @@ class Context:
         )
         self.graph = Graph(self.participant)
         self.drops = Drops()
+        self.causes = CauseLog() if wants_causes(causes, os.environ) else None
         self._replaced_before = REPLACED_TEXTS.total()
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)
@@ -418,7 +441,7 @@ class Context:
         try:
             for transport in self._transports:
                 opened.append(transport)
-                transport.tell(self._encoded_report)
+                transport.tell({"report": self._encoded_report, "causes": self._encoded_causes})
                 await transport.open(self.graph)
             self._hint_at_rcl()
         except BaseException:
@@ -522,10 +545,15 @@ class Context:
 
         return process_report(self.participant, self.dropped, list(self._reporters.values()))
 
-    def _encoded_report(self) -> bytes:
+    def _encoded_report(self, _: bytes) -> bytes:
         from aionode.engine.observation import encoded  # as above
 
         return encoded(self.report())
+
+    def _encoded_causes(self, question: bytes) -> bytes:
+        from aionode.engine.cause_reports import answer, asked, encoded  # as above
+
+        return encoded(answer(self.causes, self.participant, asked(question)))
 
     # For nodes
 

@@ -30,6 +30,7 @@ __all__ = [
     "decoded",
     "encoded",
     "process_report",
+    "unchanging",
 ]
 
 LARGEST_REPORT: Final = 16 * 2**20

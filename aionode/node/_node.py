@@ -28,6 +28,7 @@ from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
 from aionode.endpoints.subscription import Subscription
 from aionode.endpoints.timer import Rate, Timer, to_period_ns
+from aionode.engine.causes import CauseLog, Party
 from aionode.engine.context import Context
 from aionode.engine.graph_queries import (
     GraphQueries,
@@ -705,6 +706,7 @@ class Node(ParameterMethods, GraphQueries):
             clock_for_timer(core_of(self), clock),
             partial(core_of(self).callbacks.make_runner, on_error=on_error, offload=offload),
             autostart=autostart,
+            causes=timer_causes(core_of(self), timer_period_sec),
         )
         return core_of(self).add(timer)
 
@@ -1009,8 +1011,22 @@ def endpoint_setup(
         profile = qos.best_available_for_subscription(profile, others)
     endpoint = context._describe_endpoint(kind, core.info, full_name, ros_type, profile.resolved())
     return EndpointSetup(
-        endpoint, context.graph, core.callbacks, core.affinity, context.network.queue_bytes
+        endpoint,
+        context.graph,
+        core.callbacks,
+        core.affinity,
+        context.network.queue_bytes,
+        context.causes,
     )
+
+
+def timer_causes(core: NodeCore, period_sec: float) -> tuple[CauseLog, Party] | None:
+    """Return where the calls of a new timer are noted, and as whose; None if they are not."""
+    log = core.context.causes
+    if log is None:
+        return None
+    name, gid = f"timer of {period_sec:g} s", core.context.new_uuid()
+    return log, Party("timer", core.info.fully_qualified_name, name, gid)
 
 
 def direct_subscription(

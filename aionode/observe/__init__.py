@@ -10,16 +10,24 @@
 Every context of aionode answers with the counts that its endpoints and callbacks keep anyway: no
 message is subscribed to, and nothing runs while nobody asks. Two snapshots give rates: `rates`.
 
+`why` tells what led to the last message of a topic, from callback to callback and from process to
+process; `to_chains` prints it. Contexts keep what that needs if they were asked to:
+``AIONODE_CAUSES=1`` or ``Context(causes=True)``.
+
 `picture_of` is the graph as something to draw: `to_text`, `to_dot`, `to_mermaid` and `to_svg`.
 """
 
 from aionode.engine.observation import DurationReport, EntityReport, NodeReport, ProcessReport
+from aionode.observe._causes import Cause, Caused, Why, why
+from aionode.observe._chains import to_chains
 from aionode.observe._drawing import to_dot, to_mermaid, to_svg, to_text
 from aionode.observe._picture import Edge, Picture, Vertex, difference, picture_of
 from aionode.observe._rates import EntityRate, ProcessRate, Rates, rates
 from aionode.observe._snapshot import Snapshot, observe
 
 __all__ = [
+    "Cause",
+    "Caused",
     "DurationReport",
     "Edge",
     "EntityRate",
@@ -31,12 +39,15 @@ __all__ = [
     "Rates",
     "Snapshot",
     "Vertex",
+    "Why",
     "difference",
     "observe",
     "picture_of",
     "rates",
+    "to_chains",
     "to_dot",
     "to_mermaid",
     "to_svg",
     "to_text",
+    "why",
 ]

@@ -57,7 +57,7 @@ async def observe(node: Node, *, timeout_sec: float = ANSWER_S) -> Snapshot:
     answers: dict[str, bytes | None] = {}
     unreached: list[str] = []
     for transport in context.transports:
-        answers |= await transport.observe(timeout_sec)
+        answers |= await transport.observe("report", b"", timeout_sec)
         unreached += transport.silent_processes()
     found = Snapshot([context.report()], {}, {}, [], [], {})
     found.unreached.extend(dict.fromkeys(unreached))

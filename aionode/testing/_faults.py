@@ -18,7 +18,7 @@ from aionode.engine.transport.base import (
 from aionode.message import snapshot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Mapping
 
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import Call, LinkStatus, Reader, ReplyTo, Serve
@@ -87,13 +87,19 @@ class FaultyTransport(Transport):
         """Open the inner transport."""
         await self.inner.open(graph)
 
-    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
+    async def observe(
+        self,
+        what: str,
+        question: bytes,
+        timeout_s: float,
+        participants: Collection[str] | None = None,
+    ) -> dict[str, bytes | None]:
         """Ask through the inner transport."""
-        return await self.inner.observe(timeout_s)
+        return await self.inner.observe(what, question, timeout_s, participants)
 
-    def tell(self, report: Callable[[], bytes]) -> None:
+    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:
         """Answer through the inner transport."""
-        self.inner.tell(report)
+        self.inner.tell(answers)
 
     async def link_status(self) -> LinkStatus:
         """Ask through the inner transport."""

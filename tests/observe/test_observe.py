@@ -6,6 +6,7 @@ import asyncio
 import os
 import signal
 import subprocess
+from collections.abc import Collection
 
 import pytest
 from hypothesis import given
@@ -32,7 +33,13 @@ class Answering(LocalTransport):
         super().__init__()
         self.answers = answers
 
-    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
+    async def observe(
+        self,
+        what: str,
+        question: bytes,
+        timeout_s: float,
+        participants: Collection[str] | None = None,
+    ) -> dict[str, bytes | None]:
         """Return what the test says."""
         return self.answers
 

@@ -12,50 +12,20 @@ from aionode.endpoints.events import (
     QoSOfferedDeadlineMissedInfo,
 )
 from aionode.engine.rules.matching import Matching
-from aionode.engine.transport.base import Writer
 from aionode.qos import LivelinessPolicy, is_unlimited
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from aionode.clock import Alarm, TimeBase
     from aionode.endpoints.core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
+    from aionode.engine.transport.base import Writer
 
-__all__ = ["PublisherMonitor", "SignOfLife"]
+__all__ = ["PublisherMonitor"]
 
 ASSERTIONS_IN_LEASE = 3
 """Assertions of AUTOMATIC liveliness per lease: two may be lost."""
-
-
-class SignOfLife(Writer):
-    """A writer after a publisher's other writers, which notes each message they have accepted.
-
-    That way publishers without deadline and lease do no extra work per message.
-
-    Args:
-        writers: The other writers.
-        check: Checks a message that none of them uses; raises what `publish` raises.
-        note: Called for each message.
-    """
-
-    active = True
-
-    def __init__(
-        self, writers: Sequence[Writer], check: Callable[[Any], None], note: Callable[[], None]
-    ) -> None:
-        self._writers = writers
-        self._check = check
-        self._note = note
-
-    def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # as every writer
-        """Record a message."""
-        if not any(writer.active for writer in self._writers):
-            self._check(msg)
-        self._note()
-
-    def close(self) -> None:
-        """Do nothing: there is nothing to withdraw."""
 
 
 class PublisherMonitor(EventHub):
@@ -119,7 +89,7 @@ class PublisherMonitor(EventHub):
         """Whether a policy needs `note_message`."""
         return bool(self._alarms)
 
-    def note_message(self) -> None:
+    def note_message(self, sequence: int) -> None:  # noqa: ARG002  # as a `NotingWriter` calls it
         """Count a published message as a sign of life."""
         for alarm in self._alarms:
             alarm.note()

@@ -18,6 +18,7 @@ from aionode.endpoints.core.future import Futures, asks
 from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.core.node_core import core_of, in_thread_of_node
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.causes import CAUSES, Party
 from aionode.engine.rules.goal import GoalStatus, reason_id
 from aionode.errors import (
     GoalAbortedError,
@@ -121,6 +122,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._graph = node.graph
         self._participant = node.context.participant
         self._new_uuid = node.context.new_uuid
+        self._causes = node.context.causes
+        self._node_name = core_of(node).info.fully_qualified_name
         # Goals by id, from sending until their end.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(
@@ -360,11 +363,13 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             handle._sending = self._send_goal._begin(
                 self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
+            self._note_goal(handle)
             # It continues if the caller is cancelled, so that `CancelRequest` gets the answer.
             response = await self._awaiting(handle, self._kept(handle._sending.answer))
         except BaseException:
             self._forget(handle)
             raise
+        self._send_goal._note_answer(handle._sending)
         handle._sending.cancel()  # already answered
         if not response.accepted:
             self._forget(handle)
@@ -377,6 +382,13 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._signs.add(handle._key)
         self._accepted.put(handle)
         return handle
+
+    def _note_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        """Note what caused a goal; it is identified like the request that brings it."""
+        if self._causes is not None and goal._sending is not None:
+            gid = self._send_goal._endpoint.gid
+            party = Party("action client", self._node_name, self.action_name, gid)
+            self._causes.note("goal", party, goal._sending.sequence, goal=goal._key)
 
     def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         if self._goals.get(goal._key) is goal:
@@ -509,6 +521,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             await self._until_askable()
             self._signs.add(goal._key)  # perhaps the service was discovered late
             response = await self._ask(goal.goal_id)
+            goal._brought_by = CAUSES.get()[-1:]
             status = GoalStatus(response.status)
             text = await self._reason(goal, status)
         except ServiceUnavailableError:

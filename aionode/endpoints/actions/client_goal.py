@@ -10,6 +10,7 @@ from weakref import WeakSet
 
 from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.causes import CAUSES, Run, take
 from aionode.engine.rules.goal import GoalStatus
 from aionode.message import Message
 
@@ -125,7 +126,10 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._blocks = 0  # number of `async with` blocks it is bound to
         self._iterations: WeakSet[FeedbackIterator[Any]] = WeakSet()
         self._client = client
-        self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
+        self._feedback: MessageQueue[tuple[FeedbackT, tuple[Run, ...]]] = MessageQueue(
+            KEPT_FEEDBACK, CallbackStats()
+        )
+        self._brought_by: tuple[Run, ...] = ()  # the response with its outcome
         self._outcome: ActionResult[ResultT] | None = None
         self._lost: GoalLostError | None = None
         self._ended = asyncio.Event()
@@ -193,6 +197,8 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             CancelledError, EntityDestroyedError: the client was destroyed; see the class.
         """
         await self._client._awaiting(self, self._ended.wait())
+        for run in self._brought_by:
+            take(run)
         self._raise_if_lost()
         if self._outcome is None:
             raise self._client._end_of_wait()
@@ -226,7 +232,10 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
                     raise self._client._end_of_wait()
                 raise StopAsyncIteration
             await self._client._awaiting(self, self._feedback.wait())
-        return self._feedback.pop()[1]
+        feedback, causes = self._feedback.pop()[1]
+        for run in causes:
+            take(run)
+        return feedback
 
     def _raise_if_lost(self) -> None:
         if self._lost is not None:
@@ -277,7 +286,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
 
     def _take(self, feedback: FeedbackT) -> None:
         """Queue `feedback` for the reader."""
-        self._feedback.put(feedback)
+        self._feedback.put((feedback, CAUSES.get()[:1]))
 
     def _update_status(self, status: GoalStatus) -> None:
         """Update the state from the status topic; late messages change nothing."""

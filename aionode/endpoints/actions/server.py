@@ -28,6 +28,7 @@ from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.core.node_core import core_of, in_thread_of_node
 from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.causes import CAUSES, Party, add_cause
 from aionode.engine.reports.limits import tell_full, tell_rejected
 from aionode.engine.rules.early_cancels import EarlyCancels
 from aionode.engine.rules.goal import (
@@ -58,6 +59,7 @@ from aionode.qos import (
 if TYPE_CHECKING:
     from aionode.endpoints.core.callback_runner import CallbackRunner, OnError
     from aionode.endpoints.core.node_methods import NodeMethods
+    from aionode.engine.causes import CauseLog
     from aionode.message import ActionClass
     from aionode.qos import QoSProfile
 
@@ -186,6 +188,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         super().__init__(f"action server {self.action_name}")
         self.stats = CallbackStats()
         self._clock = node.get_clock()
+        self._causes = node.context.causes
+        self._node_name = core_of(node).info.fully_qualified_name
         self._time_base = node.context.time_base
         self._callbacks = core_of(node).callbacks
         self._logger = node.get_logger()
@@ -380,12 +384,14 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             GoalInfo(goal_id=request.goal_id, stamp=stamp),
             GoalKey(goal_id, stamp_ns(stamp)),
         )
+        goal._asked_by = CAUSES.get()[:1]
         self._goals[goal_id] = goal
         self._publish_status()
         return goal
 
     async def _call_handle_accepted(self, goal: Any) -> None:
         callback = self._handle_accepted_callback
+        CAUSES.set(goal._asked_by)
         try:
             if callback is None:
                 goal.execute()
@@ -446,6 +452,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _call_execute(
         self, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
     ) -> None:
+        if self._causes is not None:
+            self._begin_run(self._causes, goal, runner)
         if not self._offload:  # a thread cannot be cancelled; it has to check itself
             goal._run_in(asyncio.current_task())
         try:
@@ -459,6 +467,17 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 return
             runner.fail(error)
             goal._failed(error)
+
+    def _begin_run(
+        self, causes: CauseLog, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
+    ) -> None:
+        """Note that the current task executes `goal`, for the request that brought it."""
+        party = Party(
+            "action server", self._node_name, self.action_name, bytes(16), runner.naming()
+        )
+        for asked in goal._asked_by:
+            entered_ns = asked.entered_ns
+            goal._run = causes.begin(party, "goal", asked.gid, asked.sequence, entered_ns)
 
     def _in_loop(self, action: Callable[..., None], *args: Any) -> None:
         """Run `action` in the event loop; from another thread, wait for it. Used by goal handles.
@@ -530,6 +549,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._client_watch.take(goal_id)
             return response
         status, result = await goal._outcome()
+        if goal._run is not None:
+            add_cause(goal._run)
         await self._send_feedback_first()
         response.status = int(status)
         if result is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from aionode.engine.causes import CAUSES, Run
 from aionode.engine.rules.goal import TRANSITIONS, GoalEvent, GoalKey, GoalStatus, next_status
 from aionode.errors import GoalTransitionError
 from aionode.message import Message
@@ -67,6 +68,8 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._error_text = ""  # the reason if it was aborted
         self._cancel_text = ""  # the reason if the server cancels it on its own
         self._known = asyncio.Event()
+        self._asked_by: tuple[Run, ...] = ()  # the request that brought it
+        self._run: Run | None = None  # its execution
 
     def __repr__(self) -> str:
         return f"<ServerGoalHandle {self._server.action_name} {self.text} {self.status.name}>"
@@ -206,6 +209,9 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     def _cancel(self, text: str = "") -> None:
         """Cancel the goal: a request was accepted, or the server does so for the reason `text`."""
         self._cancel_text = text
+        if self._run is not None:
+            for run in CAUSES.get()[:1]:
+                self._run.share(run, None)
         self._move(GoalEvent.CANCEL_GOAL)
         if self._task is not None:
             self._task.cancel(text or None)

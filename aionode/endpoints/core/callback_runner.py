@@ -11,6 +11,7 @@ import functools
 import inspect
 import os
 import sys
+import weakref
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
@@ -21,6 +22,7 @@ from aionode._process.tracebacks import traceback_text
 from aionode.clock import perf_ns
 from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.endpoints.core.thread_time import ThreadTime
+from aionode.engine.causes import Party, note_end
 from aionode.errors import (
     CallbackCancelledError,
     CallbackSignatureError,
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.core.entity import Entity
     from aionode.endpoints.core.message_queue import MessageQueue
     from aionode.endpoints.stats import CallbackStats
+    from aionode.graph import EndpointInfo
     from aionode.logging import RcutilsLogger
 
 __all__ = [
@@ -137,6 +140,20 @@ class CallbackRunner:
         self.waiting = callbacks.waiting
         self.thread_time = callbacks.thread_time
         self._last_report_ns = -REPORT_INTERVAL_NS
+
+    def party_of(self, endpoint: EndpointInfo) -> Party:
+        """Return who takes what arrives at an endpoint, with the name of the callback."""
+        return Party.of(endpoint, self.naming())
+
+    def naming(self) -> Callable[[], str]:
+        """Return a function that names the callback, and keeps nothing of the program alive."""
+        reference, first = weakref.ref(self), callback_name(self.callback)
+
+        def name() -> str:
+            runner = reference()
+            return first if runner is None else callback_name(runner.callback)
+
+        return name
 
     @property
     def subject(self) -> str:
@@ -418,6 +435,7 @@ class _Measured:
         finally:
             runner.waiting.discard(self)
             ended_ns = perf_ns()
+            note_end(ended_ns)
             runner.stats.run_time.record(ended_ns - began_ns)
             runner.stats.blocking.record(longest_ns)
             if longest_ns > runner.budget_ns:
@@ -450,7 +468,9 @@ class _Offloaded:
             return await run_in_thread(self._call)
         finally:
             waiting.discard(self)
-            stats.run_time.record(perf_ns() - began_ns)
+            ended_ns = perf_ns()
+            note_end(ended_ns)
+            stats.run_time.record(ended_ns - began_ns)
             stats.blocking.record(0)
 
     def _call(self) -> Any:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from aionode.endpoints.core.callback_runner import Callbacks
+    from aionode.engine.causes import CauseLog
     from aionode.engine.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 
@@ -27,6 +28,7 @@ class EndpointSetup(NamedTuple):
         callbacks: How the node runs callbacks.
         affinity: The event loop that the node runs in.
         queue_bytes: How many bytes of messages or requests may wait for its callback.
+        causes: Keeps what caused what it sends; None if that is not kept.
     """
 
     endpoint: EndpointInfo
@@ -34,6 +36,7 @@ class EndpointSetup(NamedTuple):
     callbacks: Callbacks
     affinity: LoopAffinity
     queue_bytes: int
+    causes: CauseLog | None
 
 
 def report_heavy(setup: EndpointSetup, what: str) -> None:
@@ -58,7 +61,7 @@ class Endpoint(Entity):
         self, subject: str, setup: EndpointSetup, stage: EndStage = EndStage.CALLBACKS
     ) -> None:
         super().__init__(subject, stage)
-        self._endpoint, self._graph, self._callbacks, self._affinity, _ = setup
+        self._endpoint, self._graph, self._callbacks, self._affinity, _, self._causes = setup
         self.qos_profile = self._endpoint.qos
         self._unwatch: list[Callable[[], None]] = []
         self._unreported: AbstractSet[str] = frozenset()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from aionode.endpoints.stats import CallbackStats
 
-__all__ = ["MessageQueue"]
+__all__ = ["UNWEIGHED", "MessageQueue"]
 
 T = TypeVar("T")
 

@@ -24,6 +24,7 @@ from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.core.node_tasks import create_own_task
+from aionode.endpoints.core.subscription_reader import CausalReader
 from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 from aionode.engine.rules.publication_times import PublicationTimes
 from aionode.errors import brief
@@ -428,6 +429,8 @@ class SilenceWatch:
             await asyncio.wait(self._running)
         self._called_ns = self._steady_ns()
         self._due = False
+        if isinstance(self._reader, CausalReader):
+            self._reader.note_silence()
         rest = self._on_silence.run()
         if rest is not None:
             await rest

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from asyncio import CancelledError
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, TypedDict
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict
 
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
-from aionode.endpoints.core.message_queue import MessageQueue
+from aionode.endpoints.core.message_queue import UNWEIGHED, MessageQueue
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
+from aionode.engine.causes import Party, Run, take
 from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS, missing_before
 from aionode.engine.transport.base import SampleInfo
 from aionode.qos import HistoryPolicy, depth_of
@@ -19,11 +20,13 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.endpoints.core.callback_runner import CallbackRunner
+    from aionode.engine.causes import CauseLog
     from aionode.engine.transport.base import Raw
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
 
 __all__ = [
+    "CausalReader",
     "DirectReader",
     "MessageInfo",
     "Parts",
@@ -319,6 +322,126 @@ class SubscriptionReader(MessageQueue[Any]):
             reception_sequence_number=self._reception_sequence,
             publisher_gid=sample_info.gid,
         )
+
+
+class Arrived(NamedTuple):
+    """An item of a queue with what identifies its message."""
+
+    item: Any
+    gid: bytes
+    sequence: int
+
+
+class CausalReader(SubscriptionReader):
+    """Notes which message each callback works on, so that what it sends has a cause.
+
+    A class of its own, so that it costs nothing where causes are not kept.
+
+    Args:
+        endpoint: The subscription in the graph.
+        stats: Where lost, dropped and invalid messages are counted.
+        time_base: The source of the arrival time in a `MessageInfo`.
+        raw: Whether messages are CDR bytes.
+        wants_info: Whether the items are pairs of a message and its `MessageInfo`.
+        log: Where the runs of the callback are kept.
+    """
+
+    __slots__ = ("_arriving", "_log", "_party")
+
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        stats: CallbackStats,
+        time_base: TimeBase,
+        *,
+        raw: Raw,
+        wants_info: bool,
+        log: CauseLog,
+    ) -> None:
+        super().__init__(endpoint, stats, time_base, raw=raw, wants_info=wants_info)
+        self._log = log
+        self._party = Party.of(endpoint)
+        self._arriving = (b"", 0)
+
+    def set_runner(self, runner: CallbackRunner) -> None:
+        """Call a callback with what arrives, from when `consume` runs."""
+        super().set_runner(runner)
+        self._party = runner.party_of(self.endpoint)
+
+    def weigh(
+        self,
+        size_of: Callable[[Any], int],
+        limit_bytes: int,
+        on_heavy: Callable[[], None],
+        unweighed: int = UNWEIGHED,
+    ) -> None:
+        """Limit the total size of the items; see `MessageQueue.weigh`."""
+        super().weigh(lambda arrived: size_of(arrived.item), limit_bytes, on_heavy, unweighed)
+
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,
+        arrived_ns: int = 0,
+    ) -> None:
+        """Take one message from a transport; see `Reader` for the arguments."""
+        self._arriving = (gid, sequence)
+        super().deliver(msg, gid, sequence, source_ns, inline_deadline_ns, arrived_ns)
+
+    def put(self, item: Any, *, is_own: bool = False) -> bool:
+        """Queue an item; see `MessageQueue.put`."""
+        return super().put(Arrived(item, *self._arriving), is_own=is_own)
+
+    def take_inline(self, item: Any, inline_deadline_ns: int) -> bool:
+        """Call the callback with `item` now, if possible."""
+        return MessageQueue.take_inline(self, Arrived(item, *self._arriving), inline_deadline_ns)
+
+    def handle_items(
+        self,
+        handle: Callable[[int, Any], Coroutine[object, object, None] | None],
+        turn_ends_ns: int,
+    ) -> Coroutine[object, object, None] | None:
+        """Call the callback with the oldest message."""
+        return MessageQueue.handle_items(self, handle, turn_ends_ns)
+
+    def noting(
+        self, handle: Callable[[int, Any], Coroutine[Any, Any, None] | None]
+    ) -> Callable[[int, Arrived], Coroutine[Any, Any, None] | None]:
+        """Return a function that passes items of the queue to `handle`, and notes each run."""
+
+        def handle_arrived(entered_ns: int, arrived: Arrived) -> Coroutine[Any, Any, None] | None:
+            run = self._begin(entered_ns, arrived)
+            rest = None
+            try:
+                rest = handle(entered_ns, arrived.item)
+            finally:
+                if rest is None:
+                    run.ended_ns = perf_ns()
+            return rest
+
+        return handle_arrived
+
+    def taken(self, entered_ns: int, arrived: Arrived) -> Any:
+        """Return the item that the current task has read, and what it sends from now on is for."""
+        now_ns = perf_ns()
+        take(Run(self._party, "message", arrived.gid, arrived.sequence, entered_ns, now_ns))
+        return arrived.item
+
+    def note_silence(self) -> None:
+        """Have what the current task sends from now on be caused by a silence of the topic."""
+        self._log.begin(
+            Party("silence", self._party.node, self.endpoint.name, self.endpoint.gid),
+            "timer",
+            self.endpoint.gid,
+            0,
+            perf_ns(),
+        )
+
+    def _begin(self, entered_ns: int, arrived: Arrived) -> Run:
+        return self._log.begin(self._party, "message", arrived.gid, arrived.sequence, entered_ns)
 
 
 class DirectReader(SubscriptionReader):

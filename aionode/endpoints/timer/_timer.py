@@ -11,14 +11,22 @@ from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.core.entity import Entity
 from aionode.endpoints.core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.causes import acting_for
 from aionode.engine.rules.schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:
     from aionode.clock import Clock, ClockType
     from aionode.endpoints.core.callback_runner import CallbackRunner
+    from aionode.engine.causes import CauseLog, Party
 
-__all__ = ["RunnerFactory", "Timer", "TimerCallback", "TimerInfo", "to_period_ns"]
+__all__ = [
+    "RunnerFactory",
+    "Timer",
+    "TimerCallback",
+    "TimerInfo",
+    "to_period_ns",
+]
 
 
 class TimerInfo:
@@ -47,8 +55,51 @@ class TimerInfo:
 TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
 """The callback of a timer, sync or async; an awaitable result is awaited."""
 
+TimerCall = Callable[[int, int], Coroutine[Any, Any, None] | None]
+"""Makes a call that was due at the first time, at the second; returns what is left to await."""
+
 RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
 """Creates the runner of a timer's callback, with the options passed to `create_timer`."""
+
+
+class TimerCauses:
+    """Notes what started a timer, and its calls.
+
+    Args:
+        log: Where they are kept.
+        party: The timer.
+
+    Attributes:
+        party: The timer.
+    """
+
+    def __init__(self, log: CauseLog, party: Party) -> None:
+        self._log = log
+        self.party = party
+        self._started = 0  # the number of the last start that a callback has caused
+
+    def note_start(self) -> None:
+        """Note that the timer starts, if a callback other than its own has caused it."""
+        causes = acting_for()
+        if any(run.party is not self.party for run in causes):
+            self._started += 1
+            self._log.note("timer", self.party, self._started)
+
+    def noting(self, call: TimerCall) -> TimerCall:
+        """Return a function that makes a call of the timer and notes it."""
+
+        def make_call(expected_ns: int, now_ns: int) -> Coroutine[Any, Any, None] | None:
+            due_ns = perf_ns() - (now_ns - expected_ns)
+            run = self._log.begin(self.party, "timer", self.party.gid, self._started, due_ns)
+            rest = None
+            try:
+                rest = call(expected_ns, now_ns)
+            finally:
+                if rest is None:
+                    run.ended_ns = perf_ns()
+            return rest
+
+        return make_call
 
 
 class Timer(Entity):
@@ -75,6 +126,7 @@ class Timer(Entity):
         make_runner: RunnerFactory,
         *,
         autostart: bool = True,
+        causes: tuple[CauseLog, Party] | None = None,
     ) -> None:
         super().__init__(f"timer of {timer_period_ns / S_TO_NS:g} s")
         self.stats = CallbackStats()
@@ -83,6 +135,13 @@ class Timer(Entity):
         self._runner = make_runner(callback, self, self.stats)
         self._ticker = Ticker(clock, timer_period_ns, autostart=autostart)
         self._inline_call = InlineCall()
+        self._causes: TimerCauses | None = None
+        self._make_call: TimerCall = self._call
+        if causes is not None:
+            self._causes = noted = TimerCauses(*causes)
+            self._make_call = noted.noting(self._call)
+            noted.party.callback = self._runner.naming()
+            noted.note_start()
 
     def __repr__(self) -> str:
         schedule = self._ticker.schedule
@@ -110,6 +169,8 @@ class Timer(Entity):
         wants_info = self._wants_info_of(callback)
         self._runner = self._make_runner(callback, self, self.stats)
         self._wants_info = wants_info
+        if self._causes is not None:
+            self._causes.party.callback = self._runner.naming()
 
     @property
     def timer_period_ns(self) -> int:
@@ -135,6 +196,8 @@ class Timer(Entity):
             EntityDestroyedError: The timer or its node was destroyed (a RuntimeError).
         """
         self._refuse_if_destroyed("reset timer")
+        if self._causes is not None:
+            self._causes.note_start()
         self._ticker.schedule.reset(self.clock.now_ns())
         self._ticker.wake()
 
@@ -170,7 +233,7 @@ class Timer(Entity):
                     await ticker.wait()
                 continue
             expected_ns = schedule.call(now_ns)
-            rest = self._call(expected_ns, now_ns)
+            rest = self._make_call(expected_ns, now_ns)
             if rest is not None:
                 await rest
             if schedule.period_ns == 0:
@@ -187,7 +250,7 @@ class Timer(Entity):
         now_ns = self.clock.now_ns()
         if not (self._runner.is_sync and schedule.is_ready(now_ns) and schedule.period_ns):
             return False
-        done = self._inline_call.run(self._call, schedule.call(now_ns), now_ns)
+        done = self._inline_call.run(self._make_call, schedule.call(now_ns), now_ns)
         return done and not schedule.canceled
 
     def _call(self, expected_ns: int, now_ns: int) -> Coroutine[Any, Any, None] | None:

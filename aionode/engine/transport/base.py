@@ -20,7 +20,7 @@ import msgspec
 from aionode.engine.transport.drops import Drops
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Mapping
     from collections.abc import Set as AbstractSet
 
     from aionode.errors import DecodeError, ServiceError
@@ -422,16 +422,28 @@ class Transport(ABC):
         Called in the child, which never uses this transport again.
         """
 
-    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:  # noqa: ARG002
-        """Ask the other contexts of the domain for their reports, by participant. For tools.
+    async def observe(
+        self,
+        what: str,  # noqa: ARG002  # it reaches no other context
+        question: bytes,  # noqa: ARG002
+        timeout_s: float,  # noqa: ARG002
+        participants: Collection[str] | None = None,  # noqa: ARG002
+    ) -> dict[str, bytes | None]:
+        """Ask other contexts of the domain about themselves, by participant. For tools.
 
-        An empty answer is that of a context that keeps no reports, such as one of an older aionode;
-        None stands for one of aionode that has not answered within `timeout_s` seconds.
+        An empty answer is that of a context that does not know the question, such as one of an
+        older aionode; None stands for one of aionode that has not answered in time.
+
+        Args:
+            what: What is asked for: one of the names that others give to `tell`.
+            question: What they are told of it.
+            timeout_s: The longest wait, in seconds.
+            participants: Whom to ask; None for all.
         """
         return {}
 
-    def tell(self, report: Callable[[], bytes]) -> None:  # noqa: B027  # most have no one to tell
-        """Answer other contexts that ask for the report of this one, as `report` returns it."""
+    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:  # noqa: B027  # most have no one to tell
+        """Answer other contexts: each function answers the questions of its name."""
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have. For tools."""

@@ -19,7 +19,7 @@ from aionode.engine.wire import cdr
 from aionode.errors import TransportError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Mapping
 
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
@@ -117,13 +117,19 @@ class LinkTransport(Transport):
         """Return the processes that do not answer."""
         return self.zenoh.silent_processes()
 
-    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
-        """Ask the other contexts of the domain, linked or not, for their reports."""
-        return await self.zenoh.observe(timeout_s)
+    async def observe(
+        self,
+        what: str,
+        question: bytes,
+        timeout_s: float,
+        participants: Collection[str] | None = None,
+    ) -> dict[str, bytes | None]:
+        """Ask other contexts of the domain about themselves."""
+        return await self.zenoh.observe(what, question, timeout_s, participants)
 
-    def tell(self, report: Callable[[], bytes]) -> None:
-        """Answer other contexts that ask for the report of this one."""
-        self.zenoh.tell(report)
+    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:
+        """Answer other contexts that ask."""
+        self.zenoh.tell(answers)
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which of them can be linked, and which are."""

@@ -40,7 +40,7 @@ from aionode.engine.transport.zenoh.session.session import (
 if TYPE_CHECKING:
     import socket
     from collections import Counter
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Mapping
     from collections.abc import Set as AbstractSet
 
     from aionode.clock import TimeBase
@@ -141,13 +141,19 @@ class ZenohTransport(Transport):
             return await run_in_own_thread(partial(other_domains, session, self.network))
         return frozenset()
 
-    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
-        """Ask the other contexts of the domain for their reports."""
-        return await self._observed.ask(timeout_s)
+    async def observe(
+        self,
+        what: str,
+        question: bytes,
+        timeout_s: float,
+        participants: Collection[str] | None = None,
+    ) -> dict[str, bytes | None]:
+        """Ask other contexts of the domain about themselves."""
+        return await self._observed.ask(what, question, timeout_s, participants)
 
-    def tell(self, report: Callable[[], bytes]) -> None:
-        """Answer other contexts that ask for the report of this one."""
-        self._observed.report = report
+    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:
+        """Answer other contexts that ask."""
+        self._observed.answers = answers
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have."""

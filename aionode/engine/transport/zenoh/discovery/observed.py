@@ -18,7 +18,7 @@ from aionode.engine.transport.zenoh.connections.handlers import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Mapping
 
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.engine.transport.zenoh.discovery.peer_directory import ZenohPeerDirectory
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["Observed"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
-
-REPORT: Final = "report"
-"""The end of the key on which a context tells what it counts."""
 
 LINKS: Final = "links"
 """The end of a key on which contexts without reports answer as well."""
@@ -41,31 +38,31 @@ class Observed:
     """Answers tools of other processes, and asks them; does nothing before somebody asks.
 
     Attributes:
-        report: Returns what this context tells; None to tell nothing.
+        answers: What this context tells, by the end of the key on which it is asked.
     """
 
     def __init__(self, state: SessionState, peer_directory: ZenohPeerDirectory) -> None:
-        self.report: Callable[[], bytes] | None = None
+        self.answers: Mapping[str, Callable[[bytes], bytes]] = {}
         self._state = state
         self._peer_directory = peer_directory
         self._prefix = f"@aionode/{state.domain_id}/"
         self._queries = state.queue(self._take_query)
         self._answering = SendThread("aionode-report", state.waker)
-        self._declared: Any = None
+        self._declared: list[Any] = []
 
     def start(self, session: zenoh.Session) -> None:
         """Answer from now on."""
         with translated("reports"):
-            self._declared = session.declare_queryable(
-                self._key(self._state.participant, REPORT), direct(self._queries.put)
-            )
+            for what in self.answers:
+                key = self._key(self._state.participant, what)
+                self._declared.append(session.declare_queryable(key, direct(self._queries.put)))
 
     def stop(self) -> None:
         """Answer no more."""
         self._answering.abandon()
-        declared, self._declared = self._declared, None
-        if declared is not None:
-            declared.undeclare()
+        declared, self._declared = self._declared, []
+        for each in declared:
+            each.undeclare()
         self._queries.clear()
 
     def _key(self, participant: str, what: str) -> str:
@@ -73,39 +70,65 @@ class Observed:
 
     def _take_query(self, query: zenoh.Query) -> None:
         """Answer, from a thread: the one who asks may be stalled."""
-        key = self._key(self._state.participant, REPORT)
-        report = b"" if self.report is None else self.report()
+        asked = str(query.key_expr).rpartition("/")[2]
+        payload = query.payload
+        question = b"" if payload is None else payload.to_bytes()
+        answers = {
+            self._key(self._state.participant, what): tell(question)
+            for what, tell in self.answers.items()
+            if asked == what
+        }
 
         def answer() -> None:
             try:
                 with query:
-                    query.reply(key, report)
+                    for key, told in answers.items():
+                        query.reply(key, told)
             except zenoh.ZError as error:  # the session was closed meanwhile
-                logger.debug("%s: not answered: %s", key, reason(error))
+                logger.debug("%s: not answered: %s", asked, reason(error))
 
         self._answering.submit(answer)
 
-    async def ask(self, timeout_s: float) -> dict[str, bytes | None]:
-        """Return what the other contexts of the domain answer; see `Transport.observe`."""
+    async def ask(
+        self, what: str, question: bytes, timeout_s: float, participants: Collection[str] | None
+    ) -> dict[str, bytes | None]:
+        """Return what other contexts of the domain answer; see `Transport.observe`."""
         session = self._state.session
         if session is None:
             return {}
-        told = await self._answers(session, REPORT, timeout_s)
-        missing = self._peer_directory.contexts() - told.keys()
+        asked = self._peer_directory.contexts()
+        keys = [self._key("*", what)]
+        if participants is not None:
+            asked = set(participants)
+            keys = [self._key(participant, what) for participant in sorted(asked)]
+        told = await self._all_answers(session, keys, timeout_s, question)
+        missing = asked - told.keys()
         if not missing:
             return {**told}
-        # Those without reports answer here, so that only others count as silent; and one that was
-        # just found may not have been asked.
+        # Those that do not know the question answer here, so that only others count as silent; and
+        # one that was just found may not have been asked.
         older, again = await asyncio.gather(
-            self._answers(session, LINKS, OLDER_S), self._answers(session, REPORT, OLDER_S)
+            self._all_answers(session, [self._key("*", LINKS)], OLDER_S),
+            self._all_answers(session, keys, OLDER_S, question),
         )
         empty = dict.fromkeys(missing & older.keys(), b"")
         return {**dict.fromkeys(missing), **empty, **told, **again}
 
-    async def _answers(
-        self, session: zenoh.Session, what: str, timeout_s: float
+    async def _all_answers(
+        self, session: zenoh.Session, keys: list[str], timeout_s: float, question: bytes = b""
     ) -> dict[str, bytes]:
-        """Return what each context answers on one of its keys."""
+        """Return what each context answers on several keys."""
+        found: dict[str, bytes] = {}
+        for answers in await asyncio.gather(
+            *(self._answers(session, key, timeout_s, question) for key in keys)
+        ):
+            found |= answers
+        return found
+
+    async def _answers(
+        self, session: zenoh.Session, key: str, timeout_s: float, question: bytes
+    ) -> dict[str, bytes]:
+        """Return what each context answers on one key."""
         found: dict[str, bytes] = {}
         ended = asyncio.Event()
 
@@ -118,9 +141,10 @@ class Observed:
 
         queue = self._state.queue(take)
         session.get(
-            self._key("*", what),
+            key,
             direct(queue.put, lambda: queue.put(None)),
             target=zenoh.QueryTarget.ALL,
+            payload=question,
             timeout=timeout_s,
             congestion_control=DROP,
             priority=LOOP_PRIORITY,

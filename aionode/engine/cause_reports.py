@@ -1,0 +1,272 @@
+"""What a context tells of its log of causes when a tool asks: entries, or the latest runs."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from aionode.clock import perf_ns
+from aionode.engine.causes import Kind
+from aionode.engine.observation import unchanging
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from aionode.engine.causes import CauseLog, Party, Run, Sent
+
+__all__ = [
+    "CauseQuestion",
+    "CauseReport",
+    "RunReport",
+    "SentReport",
+    "answer",
+    "asked",
+    "decoded",
+    "encoded",
+]
+
+LARGEST_REPORT: Final = 16 * 2**20
+"""The most bytes of an answer of another process that are read."""
+
+MOST_TOLD: Final = 200
+"""How many entries a context tells at most when it is asked for one and what led to it."""
+
+MOST_RUNS: Final = 2000
+"""How many runs, and how many entries, a context tells at once when it is asked for all."""
+
+Key = tuple[Kind, bytes, int]
+"""What identifies something that was sent: its kind, gid and sequence number."""
+
+
+class CauseQuestion(msgspec.Struct, array_like=True):
+    """What a tool wants to know.
+
+    Attributes:
+        name: The latest thing sent by this name: of a topic, service, action, node or goal.
+        keys: The entries with these keys.
+        runs_from: All runs and entries from this number of a run on; None for none.
+    """
+
+    name: str = ""
+    keys: list[Key] = []
+    runs_from: int | None = None
+
+
+class RunReport(msgspec.Struct, array_like=True):
+    """One call of a callback, or something that a task has awaited.
+
+    Attributes:
+        kind: What was taken: ``message``, ``request``, ``response``, ``goal`` or ``timer``.
+        party: Who took it, such as ``subscription``.
+        node: The full name of its node.
+        name: The topic, service or action; the period of a timer.
+        callback: The name of the callback; empty if it was awaited.
+        gid: The gid of what was taken.
+        sequence: Its sequence number.
+        entered_ns: When it arrived, by the clock of the process.
+        began_ns: When the callback was called.
+        ended_ns: When the callback had ended; 0 if it has not.
+    """
+
+    kind: Kind
+    party: str
+    node: str
+    name: str
+    callback: str
+    gid: bytes
+    sequence: int
+    entered_ns: int
+    began_ns: int
+    ended_ns: int
+
+
+class SentReport(msgspec.Struct, array_like=True):
+    """Something that was sent.
+
+    Attributes:
+        kind: What it is; for ``timer``, its start by a callback.
+        party: Who sent it, such as ``publisher``.
+        node: The full name of its node.
+        name: The topic, service or action; the period of a timer.
+        gid: Its gid.
+        sequence: Its sequence number.
+        at_ns: When it was sent, by the clock of the process.
+        causes: The runs that caused it.
+        goal: The id of the goal that it is about, in hexadecimal; empty if none.
+    """
+
+    kind: Kind
+    party: str
+    node: str
+    name: str
+    gid: bytes
+    sequence: int
+    at_ns: int
+    causes: list[RunReport]
+    goal: str = ""
+
+
+class CauseReport(msgspec.Struct):
+    """What one context answers.
+
+    Attributes:
+        participant: The id of the context in the graph, in hexadecimal.
+        host: The name of the host.
+        pid: The id of the process.
+        program: The command line, shortened.
+        clock: Identifies the clock: processes with the same text have the same one.
+        now_ns: When this was told, by that clock.
+        is_kept: Whether it keeps causes at all.
+        sent: What was sent, the oldest first.
+        runs: Runs, the oldest first.
+        next_run: The number of the next run.
+    """
+
+    participant: str
+    host: str
+    pid: int
+    program: str
+    clock: str
+    now_ns: int
+    is_kept: bool
+    sent: list[SentReport] = []
+    runs: list[RunReport] = []
+    next_run: int = 0
+
+
+@cache
+def clock_id() -> str:
+    """Return what processes share that read the same clock: one boot of one kernel."""
+    try:
+        return Path("/proc/sys/kernel/random/boot_id").read_text().strip()
+    except OSError:
+        return f"{unchanging()['host']} {os.getpid()}"
+
+
+def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> CauseReport:
+    """Return the answer of a context with this log; None for one that keeps no causes."""
+    same = unchanging()
+    report = CauseReport(
+        participant, same["host"], os.getpid(), same["program"], clock_id(), perf_ns(),
+        log is not None,
+    )  # fmt: skip
+    if log is None:
+        return report
+    if question.runs_from is not None:
+        add_runs(report, log, question.runs_from)
+        return report
+    entries = log.everything()
+    by_key = {key_of(sent): sent for sent in entries}
+    wanted = [by_key[key] for key in question.keys if key in by_key]
+    if question.name:
+        wanted += latest(entries, question.name)
+    report.sent = [reported(sent) for sent in with_causes(wanted, by_key)]
+    return report
+
+
+def add_runs(report: CauseReport, log: CauseLog, first: int) -> None:
+    """Add the runs from a number on that are still kept, and what was sent since then."""
+    runs, count = list(log.runs), log.counted
+    oldest = count - len(runs)
+    begin = min(max(first, oldest), count)
+    chosen = runs[begin - oldest :][:MOST_RUNS]
+    report.next_run = begin + len(chosen)
+    report.runs = [run_report(run) for run in chosen]
+    if chosen:
+        since = chosen[0].began_ns
+        recent = (sent for sent in reversed(log.sent) if sent.at_ns >= since)
+        report.sent = [reported(sent) for sent in islice(recent, MOST_RUNS)][::-1]
+
+
+def key_of(sent: Sent) -> Key:
+    """Return what identifies something sent."""
+    return sent.kind, sent.gid, sent.sequence
+
+
+def latest(entries: list[Sent], name: str) -> list[Sent]:
+    """Return the latest entry by this name; of a node, what it has sent last of each name."""
+    full = "/" + name.lstrip("/")
+    found: dict[str, Sent] = {}
+    of_node: dict[tuple[str, str], Sent] = {}
+    for sent in reversed(entries):
+        if sent.kind == "timer":
+            continue
+        if sent.party.name == full or (sent.goal and sent.goal.hex() == name):
+            found.setdefault(sent.kind, sent)
+        elif sent.party.node == full and not is_internal(sent.party.name):
+            of_node.setdefault((sent.kind, sent.party.name), sent)
+    if found:
+        return [max(found.values(), key=lambda sent: sent.at_ns)]
+    return list(of_node.values())
+
+
+def is_internal(name: str) -> bool:
+    """Return whether a name is one of the parts of an action, or ROS's own."""
+    return "/_action/" in name or name in {"/rosout", "/parameter_events"}
+
+
+def with_causes(wanted: Iterable[Sent], by_key: dict[Key, Sent]) -> list[Sent]:
+    """Return entries with all that led to them in this process, the nearest first."""
+    found: dict[Key, Sent] = {}
+    left = list(wanted)
+    for sent in left:  # which grows meanwhile
+        if key_of(sent) in found or len(found) == MOST_TOLD:
+            continue
+        found[key_of(sent)] = sent
+        for run in sent.causes:
+            before = by_key.get((run.kind, run.gid, run.sequence))
+            if before is not None:
+                left.append(before)
+    return list(found.values())
+
+
+def run_report(run: Run) -> RunReport:
+    """Return a run as it is told."""
+    party: Party = run.party
+    return RunReport(
+        run.kind, party.kind, party.node, party.name, party.callback() if run.is_call else "",
+        run.gid, run.sequence, run.entered_ns, run.began_ns, run.ended_ns,
+    )  # fmt: skip
+
+
+def reported(sent: Sent) -> SentReport:
+    """Return an entry as it is told."""
+    party = sent.party
+    return SentReport(
+        sent.kind, party.kind, party.node, party.name, sent.gid, sent.sequence, sent.at_ns,
+        [run_report(run) for run in sent.causes], sent.goal.hex(),
+    )  # fmt: skip
+
+
+ENCODER: Final = msgspec.msgpack.Encoder()
+QUESTIONS: Final = msgspec.msgpack.Decoder(CauseQuestion)
+REPORTS: Final = msgspec.msgpack.Decoder(CauseReport)
+UNREADABLE: Final = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
+
+
+def encoded(told: CauseQuestion | CauseReport) -> bytes:
+    """Return a question or an answer as bytes."""
+    return ENCODER.encode(told)
+
+
+def decoded(data: bytes) -> CauseReport | None:
+    """Return the answer of another process; None if it is none that is known here."""
+    if len(data) > LARGEST_REPORT:
+        return None
+    try:
+        return REPORTS.decode(data)
+    except UNREADABLE:
+        return None
+
+
+def asked(data: bytes) -> CauseQuestion:
+    """Return a question of another process; one for nothing if it is none that is known here."""
+    try:
+        return QUESTIONS.decode(data)
+    except UNREADABLE:
+        return CauseQuestion()

@@ -1,0 +1,264 @@
+"""Keeps what caused each message, request, response, goal and call of a timer.
+
+A *run* is one call of a callback, with what it took: a message, a request, a goal, the tick of a
+timer. `CAUSES` holds the runs that the current task acts for; it is a context variable, so tasks,
+threads of `offload` and callbacks of the event loop inherit it. What is sent is noted in the log of
+its context with these runs. Both are bounded; what is older is forgotten.
+
+A message is identified by the gid of its publisher and its sequence number, which every message
+carries anyway, a request and its response by those of the client. So nothing is added to what is
+sent, and the log of one process tells which entry of another's came before.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import weakref
+from collections import deque
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
+
+from aionode._process.recent import Recent
+from aionode.clock import perf_ns
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+
+__all__ = [
+    "CAUSES",
+    "CauseLog",
+    "Kind",
+    "Party",
+    "Run",
+    "Sent",
+    "acting_for",
+    "add_cause",
+    "note_end",
+    "take",
+]
+
+Kind: TypeAlias = Literal["message", "request", "response", "goal", "timer"]
+
+MOST_KEPT: Final = 4096
+"""How many things sent, and how many runs, a context keeps: about 2 MB of each."""
+
+MOST_SENDERS: Final = 1024
+"""How many publishers, clients and services have their last thing kept, however old it is."""
+
+MOST_CAUSES: Final = 8
+"""How many runs something is caused by at most, the latest."""
+
+
+class Party:
+    """Something that sends or takes: an endpoint, a timer or an action server.
+
+    It outlives the entity itself in the log, so it refers to none.
+
+    Attributes:
+        kind: ``publisher``, ``subscription``, ``client``, ``server``, ``timer``, ``action client``
+            or ``action server``.
+        node: The full name of its node.
+        name: Its full name; for a timer its period.
+        gid: The 16 bytes that identify it.
+        callback: Returns the name of its callback; empty if it has none.
+    """
+
+    __slots__ = ("callback", "gid", "kind", "name", "node")
+
+    def __init__(
+        self, kind: str, node: str, name: str, gid: bytes, callback: Callable[[], str] = str
+    ) -> None:
+        self.kind = kind
+        self.node = node
+        self.name = name
+        self.gid = gid
+        self.callback = callback
+
+    @classmethod
+    def of(cls, endpoint: EndpointInfo, callback: Callable[[], str] = str) -> Party:
+        """Return the party of an endpoint in the graph."""
+        node = endpoint.node.fully_qualified_name
+        return cls(endpoint.kind.value, node, endpoint.name, endpoint.gid, callback)
+
+
+class Run:
+    """One call of a callback; or a message or response that a task has awaited.
+
+    Attributes:
+        party: Who took something.
+        kind: What it took.
+        gid: The gid of what it took.
+        sequence: Its sequence number.
+        entered_ns: When it arrived, by `perf_ns`.
+        began_ns: When the callback was called.
+        ended_ns: When the callback had ended; 0 before.
+        is_call: Whether it is the call of a callback.
+        shared: What tasks that it has started took, each with its task, and the cancellation of a
+            goal, with None.
+    """
+
+    __slots__ = (
+        "began_ns",
+        "ended_ns",
+        "entered_ns",
+        "gid",
+        "is_call",
+        "kind",
+        "party",
+        "sequence",
+        "shared",
+    )
+
+    def __init__(
+        self, party: Party, kind: Kind, gid: bytes, sequence: int, entered_ns: int, began_ns: int
+    ) -> None:
+        self.party = party
+        self.kind: Kind = kind
+        self.gid = gid
+        self.sequence = sequence
+        self.entered_ns = entered_ns
+        self.began_ns = began_ns
+        self.ended_ns = 0
+        self.is_call = False
+        self.shared: list[tuple[Run, weakref.ref[asyncio.Task[Any]] | None]] = []
+
+    def share(self, run: Run, task: asyncio.Task[Any] | None) -> None:
+        """Add a cause for what this run and its tasks send: once `task` has ended, or now."""
+        reference = None if task is None else weakref.ref(task)
+        others = [each for each in self.shared if each[0] is not run]
+        self.shared = [*others, (run, reference)][-MOST_CAUSES:]
+
+
+class Sent(NamedTuple):
+    """Something that was sent.
+
+    Attributes:
+        kind: What it is.
+        party: Who sent it.
+        gid: Its gid: that of the publisher; of the client for a request, its response and a goal.
+        sequence: Its sequence number.
+        at_ns: When it was sent, by `perf_ns`.
+        causes: The runs that caused it.
+        goal: The id of the goal that it is about, if any.
+    """
+
+    kind: Kind
+    party: Party
+    gid: bytes
+    sequence: int
+    at_ns: int
+    causes: tuple[Run, ...]
+    goal: bytes = b""
+
+
+CAUSES: ContextVar[tuple[Run, ...]] = ContextVar("aionode_causes", default=())
+"""The runs that the current task acts for, the callback's own first."""
+
+
+def acting_for() -> tuple[Run, ...]:
+    """Return the runs that cause what the current task sends now.
+
+    What a task of the same callback took counts once that task has ended: until then nobody can
+    have used it but that task.
+    """
+    causes = CAUSES.get()
+    if not any(run.shared for run in causes):
+        return causes
+    found = list(causes)
+    for run in causes:
+        for shared, reference in run.shared:
+            task = None if reference is None else reference()
+            if (task is None or task.done()) and shared not in found:
+                found.append(shared)
+    return tuple(found[:1] + found[1:][1 - MOST_CAUSES :])
+
+
+def add_cause(*runs: Run) -> None:
+    """Have what the current task sends from now on be caused by `runs` too.
+
+    A run takes the place of the one before it of the same party, unless that is the callback's own.
+    """
+    causes = list(CAUSES.get())
+    for run in runs:
+        places = (
+            place
+            for place, before in enumerate(causes)
+            if before.party is run.party and not (place == 0 and before.is_call)
+        )
+        place = next(places, None)
+        if run in causes:
+            continue
+        if place is None:
+            causes.append(run)
+        else:
+            causes[place] = run
+    if len(causes) > MOST_CAUSES:
+        del causes[1 : 1 + len(causes) - MOST_CAUSES]
+    CAUSES.set(tuple(causes))
+
+
+def take(run: Run) -> None:
+    """Add a cause that the current task has awaited.
+
+    Other tasks of its callback are caused by it as well once this one has ended. What is awaited is
+    never the first cause of a task that has others, so that no chain of runs grows.
+    """
+    causes = CAUSES.get()
+    add_cause(run)
+    try:
+        task = asyncio.current_task()
+    except RuntimeError:  # in a thread
+        task = None
+    if causes and task is not None:
+        causes[0].share(run, task)
+
+
+def note_end(now_ns: int) -> None:
+    """Note that the callback for which the current task acts has ended."""
+    for run in CAUSES.get():
+        if not run.ended_ns:
+            run.ended_ns = now_ns
+        return  # the callback's own is the first
+
+
+class CauseLog:
+    """What the nodes of one context have sent, and why.
+
+    Entries are added from any thread: each is one step of a deque.
+
+    Attributes:
+        sent: What was sent last, the oldest first.
+        runs: The callbacks that were called last, the oldest first.
+        counted: How many runs were ever added.
+    """
+
+    def __init__(self) -> None:
+        self.sent: deque[Sent] = deque(maxlen=MOST_KEPT)
+        self.runs: deque[Run] = deque(maxlen=MOST_KEPT)
+        self.counted = 0
+        self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MOST_SENDERS)
+
+    def note(
+        self, kind: Kind, party: Party, sequence: int, *, gid: bytes = b"", goal: bytes = b""
+    ) -> None:
+        """Add something that is being sent."""
+        sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), acting_for(), goal)
+        self.sent.append(sent)
+        self._last.put((kind, party.gid, party.name), sent)
+
+    def begin(self, party: Party, kind: Kind, gid: bytes, sequence: int, entered_ns: int) -> Run:
+        """Add a run, which the current task acts for from now on; return it."""
+        run = Run(party, kind, gid, sequence, entered_ns, perf_ns())
+        run.is_call = True
+        self.counted += 1
+        self.runs.append(run)
+        CAUSES.set((run,))
+        return run
+
+    def everything(self) -> list[Sent]:
+        """Return all entries, the oldest first."""
+        kept = list(self.sent)
+        before = kept[0].at_ns if kept else 0
+        return [*(sent for sent in list(self._last.values()) if sent.at_ns < before), *kept]

@@ -1,0 +1,328 @@
+"""Why something was sent: what led to it, asked from the processes that took part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+import msgspec
+
+from aionode.clock import perf_ns
+from aionode.engine.cause_reports import (
+    CauseQuestion,
+    CauseReport,
+    Key,
+    RunReport,
+    SentReport,
+    answer,
+    clock_id,
+    decoded,
+    encoded,
+)
+from aionode.graph import EndpointInfo, EndpointKind
+from aionode.names import is_hidden
+from aionode.observe._snapshot import ANSWER_S
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from aionode.engine.causes import Kind
+    from aionode.node import Node
+
+__all__ = ["Cause", "Caused", "Why", "why"]
+
+MOST_ROUNDS: Final = 64
+"""How often processes are asked for what came before, at most: how many there are in a chain."""
+
+MOST_ENTRIES: Final = 1000
+"""How many things that were sent are followed back, at most."""
+
+Unknown: TypeAlias = Literal[
+    "", "no aionode", "older", "silent", "not kept", "forgotten", "above", "too far"
+]
+"""Why the causes of something are not known: its process is none of aionode's, is too old, does not
+answer, or keeps none; it was too long ago; they are shown above; the chain is too long. Empty if
+they are known.
+"""
+
+
+class Cause(msgspec.Struct, frozen=True):
+    """A callback that has sent something, or what a task awaited before it did.
+
+    Attributes:
+        node: The full name of its node.
+        party: What took something, such as ``subscription``, ``timer`` or ``action server``.
+        name: The topic, service or action; of a timer its period.
+        callback: The name of the callback; empty if a task has awaited it.
+        waited_ns: How long it had waited until then, in nanoseconds.
+        ran_ns: How long the callback had run when it sent something.
+        source: What it took; None for the call of a timer that no callback has started.
+    """
+
+    node: str
+    party: str
+    name: str
+    callback: str
+    waited_ns: int
+    ran_ns: int
+    source: Caused | None
+
+
+class Caused(msgspec.Struct, frozen=True):
+    """Something that was sent, and what caused it.
+
+    Attributes:
+        kind: ``message``, ``request``, ``response``, ``goal``, or ``timer`` for its start.
+        name: The topic, service or action; the period of a timer.
+        node: The full name of the node that has sent it; empty if unknown.
+        gid: The gid of its publisher or client, in hexadecimal.
+        sequence: Its number.
+        ago_ns: How long ago it was sent, in nanoseconds; where that is unknown, how long ago it
+            was received; None if nobody has told.
+        causes: What caused it; none if it was not in a callback.
+        unknown: Why its causes are unknown; empty if they are known.
+    """
+
+    kind: Kind
+    name: str
+    node: str
+    gid: str
+    sequence: int
+    ago_ns: int | None
+    causes: tuple[Cause, ...] = ()
+    unknown: Unknown = ""
+
+
+class Why(msgspec.Struct):
+    """What led to the latest thing of a name.
+
+    Attributes:
+        name: The name that was asked for.
+        sent: What was sent last by it; for a node, of each topic, service and action.
+        not_kept: Contexts that keep no causes, each with the names of its nodes.
+        silent: Those that have not answered, in the same form.
+        older: Those whose aionode cannot keep causes.
+        unreadable: Those whose answer has another form than is known here.
+    """
+
+    name: str
+    sent: list[Caused] = []
+    not_kept: dict[str, list[str]] = {}
+    silent: dict[str, list[str]] = {}
+    older: dict[str, list[str]] = {}
+    unreadable: dict[str, list[str]] = {}
+
+
+async def why(node: Node, name: str, *, timeout_sec: float = ANSWER_S) -> Why:
+    """Return what led to the latest message of a topic, or call, goal or thing that a node sent.
+
+    All processes of aionode are asked for it, and then those that sent what caused it, process by
+    process. Each time is told by the clock of its process, and the ages are those of the moment in
+    which it answered: between hosts they are off by the time that the answer has taken. Cancelling
+    is safe.
+
+    Args:
+        node: A running node.
+        name: The name of a topic, service, action or node, or the id of a goal in hexadecimal.
+        timeout_sec: The longest wait for answers of a process, in seconds.
+    """
+    inquiry = Inquiry(node, name, timeout_sec)
+    await inquiry.ask(CauseQuestion(name), None)
+    roots = inquiry.roots()
+    for _ in range(MOST_ROUNDS):
+        keys = inquiry.missing()
+        if not keys or len(inquiry.sent) >= MOST_ENTRIES:
+            break
+        owners = {owner for owners in keys.values() for owner in owners}
+        await inquiry.ask(CauseQuestion(keys=list(keys)), owners)
+    inquiry.found.sent = [inquiry.caused(entry, ()) for entry in roots] or inquiry.leaves()
+    return inquiry.found
+
+
+class Inquiry:
+    """What is known so far.
+
+    Attributes:
+        found: The result, but for the tree.
+        sent: What was sent, with the report that tells of it, by key.
+    """
+
+    def __init__(self, node: Node, name: str, timeout_sec: float) -> None:
+        self.found = Why(name)
+        self.sent: dict[Key, tuple[SentReport, CauseReport]] = {}
+        self._node = node
+        self._timeout_sec = timeout_sec
+        self._asked: set[Key] = set()
+        self._offsets: dict[str, int] = {}  # by participant: from its clock to this one
+        self._now_ns = perf_ns()
+        self._endpoints = {each.gid: each for each in node.graph.endpoints()}
+        self._named: dict[str, list[str]] = {}
+        self._drawn: set[Key] = set()
+        for info in node.graph.nodes():
+            if not is_hidden(info.fully_qualified_name):
+                self._named.setdefault(info.participant, []).append(info.fully_qualified_name)
+
+    async def ask(self, question: CauseQuestion, participants: Collection[str] | None) -> None:
+        """Ask some contexts, or all; and keep what they tell."""
+        self._asked.update(question.keys)
+        context = self._node.context
+        if participants is None or context.participant in participants:
+            self._keep(answer(context.causes, context.participant, question))
+        gone = {*self.found.silent, *self.found.older, *self.found.unreadable}
+        others = None if participants is None else set(participants) - gone - {context.participant}
+        if others is not None and not others:
+            return
+        data = encoded(question)
+        for transport in context.transports:
+            told = await transport.observe("causes", data, self._timeout_sec, others)
+            for participant, told_of in told.items():
+                self._take(participant, told_of)
+
+    def _take(self, participant: str, told: bytes | None) -> None:
+        nodes = sorted(self._named.get(participant, []))
+        if told is None:
+            if nodes:  # others have just ended, or are tools
+                self.found.silent[participant] = nodes
+        elif not told:
+            self.found.older[participant] = nodes
+        elif (report := decoded(told)) is not None:
+            self._keep(report)
+        else:
+            self.found.unreadable[participant] = nodes
+
+    def _keep(self, report: CauseReport) -> None:
+        nodes = sorted(self._named.get(report.participant, []))
+        if not report.is_kept and nodes:
+            self.found.not_kept[report.participant] = nodes
+        offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
+        known = self._offsets.get(report.participant, offset)
+        self._offsets[report.participant] = min(known, offset)
+        for entry in report.sent:
+            self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
+
+    def roots(self) -> list[SentReport]:
+        """Return what was asked for: the latest of all; of a node, all that it has sent."""
+        full = "/" + self.found.name.lstrip("/")
+        entries = [
+            entry
+            for entry, _ in self.sent.values()
+            if entry.name == full or (entry.goal and entry.goal == self.found.name)
+        ]
+        if entries:
+            return [max(entries, key=self._at_ns)]
+        latest: dict[tuple[str, str], SentReport] = {}
+        for entry, report in self.sent.values():
+            if entry.node == full and entry in report.sent:
+                key = entry.kind, entry.name
+                if key not in latest or self._at_ns(latest[key]) < self._at_ns(entry):
+                    latest[key] = entry
+        return sorted(latest.values(), key=self._at_ns, reverse=True)
+
+    def missing(self) -> dict[Key, list[str]]:
+        """Return what came before and was not asked for, with the contexts that may know."""
+        found: dict[Key, list[str]] = {}
+        for entry, _ in self.sent.values():
+            for run in entry.causes:
+                key = run.kind, run.gid, run.sequence
+                if key not in self.sent and key not in self._asked and run.kind != "timer":
+                    owners = self._owners(run)
+                    self._asked.add(key)
+                    if owners:
+                        found[key] = owners
+        return found
+
+    def _owners(self, run: RunReport) -> list[str]:
+        """Return the contexts that may have sent what a run took."""
+        if run.kind == "response":
+            return sorted({each.node.participant for each in self._servers(run)})
+        sender = self._endpoints.get(run.gid)
+        return [] if sender is None else [sender.node.participant]
+
+    def _servers(self, run: RunReport) -> list[EndpointInfo]:
+        return self._node.graph.endpoints(EndpointKind.SERVER, name=run.name)
+
+    # The tree
+
+    def _at_ns(self, entry: SentReport) -> int:
+        _, report = self.sent[entry.kind, entry.gid, entry.sequence]
+        return entry.at_ns + self._offsets[report.participant]
+
+    def caused(self, entry: SentReport, above: tuple[Key, ...]) -> Caused:
+        """Return something that was sent, with its causes."""
+        key = entry.kind, entry.gid, entry.sequence
+        _, report = self.sent[key]
+        is_known = key not in self._drawn and len(above) < MOST_ROUNDS * 2
+        unknown: Unknown = "" if is_known else "above" if key in self._drawn else "too far"
+        self._drawn.add(key)
+        causes = (self._cause(entry, run, report, (*above, key)) for run in entry.causes)
+        return Caused(
+            entry.kind,
+            entry.name,
+            entry.node,
+            entry.gid.hex(),
+            entry.sequence,
+            max(self._now_ns - self._at_ns(entry), 0),
+            tuple(causes) if is_known else (),
+            unknown if entry.causes else "",
+        )
+
+    def _cause(
+        self, entry: SentReport, run: RunReport, report: CauseReport, above: tuple[Key, ...]
+    ) -> Cause:
+        return Cause(
+            run.node,
+            run.party,
+            run.name,
+            run.callback,
+            max(run.began_ns - run.entered_ns, 0),
+            max(entry.at_ns - run.began_ns, 0),
+            self._source(run, report, above),
+        )
+
+    def _source(self, run: RunReport, report: CauseReport, above: tuple[Key, ...]) -> Caused | None:
+        """Return what a run took; None for the call of a timer that no callback has started."""
+        known = self.sent.get((run.kind, run.gid, run.sequence))
+        if known is not None:
+            return self.caused(known[0], above)
+        if run.kind == "timer" and not run.sequence:
+            return None
+        arrived_ns = run.entered_ns + self._offsets[report.participant]
+        senders = self._servers(run) if run.kind == "response" else []
+        if run.gid in self._endpoints and run.kind != "response":
+            senders = [self._endpoints[run.gid]]
+        return Caused(
+            run.kind,
+            run.name,
+            senders[0].node.fully_qualified_name if senders else "",
+            run.gid.hex(),
+            run.sequence,
+            max(self._now_ns - arrived_ns, 0),
+            unknown=self._reason(senders[0].node.participant) if senders else "forgotten",
+        )
+
+    def _reason(self, participant: str) -> Unknown:
+        """Return why a context has not told the causes of what it has sent."""
+        reasons: tuple[tuple[Unknown, Iterable[str]], ...] = (
+            ("not kept", self.found.not_kept),
+            ("silent", self.found.silent),
+            ("older", (*self.found.older, *self.found.unreadable)),
+            ("forgotten", self._offsets),
+        )
+        return next((reason for reason, those in reasons if participant in those), "no aionode")
+
+    def leaves(self) -> list[Caused]:
+        """Return those who send something by the name, of whom nothing is told."""
+        full = "/" + self.found.name.lstrip("/")
+        kinds: dict[EndpointKind, Kind] = {
+            EndpointKind.PUBLISHER: "message",
+            EndpointKind.CLIENT: "request",
+        }
+        return [
+            Caused(
+                kinds[each.kind], each.name, each.node.fully_qualified_name, each.gid.hex(), 0,
+                None, unknown=self._reason(each.node.participant),
+            )
+            for each in self._endpoints.values()
+            if each.name == full and each.kind in kinds and not is_hidden(
+                each.node.fully_qualified_name
+            )
+        ]  # fmt: skip

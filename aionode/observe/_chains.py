@@ -1,0 +1,97 @@
+"""What led to something, as lines of text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from aionode.errors import escaped
+
+if TYPE_CHECKING:
+    from aionode.observe._causes import Cause, Caused, Unknown, Why
+
+__all__ = ["to_chains"]
+
+ARROW: Final = " ← "
+
+UNKNOWN: Final[dict[Unknown, str]] = {
+    "no aionode": "ROS 2",
+    "older": "an older aionode",
+    "silent": "does not answer",
+    "not kept": "keeps no causes",
+    "forgotten": "no longer kept",
+    "above": "see above",
+    "too far": "and so on",
+}
+
+KINDS: Final = {"request": "request of ", "response": "response of ", "goal": "goal of "}
+
+REMEDY: Final = "start it with AIONODE_CAUSES=1, or with Context(causes=True)"
+
+
+def to_chains(why: Why) -> str:
+    """Return what led to something as text: one chain a line, and a branch where it has several.
+
+    Below it are the processes of which nothing is known, with what to do about that.
+    """
+    lines = [line for sent in why.sent for line in chain(sent)]
+    notes = {
+        f"keeps no causes: {REMEDY}": why.not_kept,
+        "does not answer": why.silent,
+        "is of an older aionode, which keeps no causes": why.older,
+        "has answered what this version cannot read": why.unreadable,
+    }
+    lines += [
+        f"{', '.join(nodes) or 'a process'} {text}"
+        for text, those in notes.items()
+        for nodes in those.values()
+    ]
+    return escaped("\n".join(lines))
+
+
+def chain(sent: Caused) -> list[str]:
+    """Return the lines of something that was sent."""
+    first = what(sent)
+    if len(sent.causes) == 1:
+        rest = link(sent.causes[0])
+        return [first + ARROW + rest[0], *rest[1:]]
+    lines = [first]
+    for number, cause in enumerate(sent.causes, 1):
+        is_last = number == len(sent.causes)
+        rest = link(cause)
+        lines.append(("└─" if is_last else "├─") + ARROW + rest[0])
+        lines += [("   " if is_last else "│  ") + line for line in rest[1:]]
+    return lines
+
+
+def link(cause: Cause) -> list[str]:
+    """Return the lines of a cause, and what led to it."""
+    node = cause.node.lstrip("/")
+    if not cause.callback:
+        first = f"{node} (awaited, sent {took(cause.ran_ns)} later)"
+    else:
+        times = f"run {took(cause.ran_ns)}, waited {took(cause.waited_ns)}"
+        if cause.source is None:
+            times = f"{cause.name if cause.party == 'timer' else 'silence'}, {times}"
+        first = f"{node}.{cause.callback.rpartition('.')[2]} ({times})"
+    if cause.source is None:
+        return [first]
+    rest = chain(cause.source)
+    return [first + ARROW + rest[0], *rest[1:]]
+
+
+def what(sent: Caused) -> str:
+    """Return something that was sent, and when."""
+    name = f"start of {sent.name}" if sent.kind == "timer" else KINDS.get(sent.kind, "") + sent.name
+    who = [sent.node.lstrip("/")] if sent.node and (sent.unknown or not sent.causes) else []
+    who += [UNKNOWN[sent.unknown]] if sent.unknown else [] if sent.causes else ["not in a callback"]
+    told = f" ({', '.join(who)})" if who else ""
+    return f"{name}{told}" + ("" if sent.ago_ns is None else f" {took(sent.ago_ns)} ago")
+
+
+def took(duration_ns: int) -> str:
+    """Return a duration in words, as short as it is useful."""
+    for unit, size in (("s", 1e9), ("ms", 1e6)):
+        if duration_ns >= size:
+            value = duration_ns / size
+            return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
+    return f"{duration_ns / 1e3:.0f} us"
