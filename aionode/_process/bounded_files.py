@@ -7,7 +7,7 @@ import os
 import stat
 from typing import Final
 
-__all__ = ["LARGEST_FILE", "read_file"]
+__all__ = ["LARGEST_FILE", "LFS_POINTER", "is_lfs_pointer", "read_file"]
 
 LARGEST_FILE: Final = 16 << 20
 """The largest file that is read at once, in bytes."""
@@ -16,6 +16,12 @@ PIECE: Final = 64 << 10
 """Bytes that are read at once, or as many as were read so far, so that memory grows only with what
 is there.
 """
+
+LFS: Final = b"version https://git-lfs.github.com/spec/"
+"""The start of the pointer file that Git LFS leaves in place of a file that is not fetched."""
+
+LFS_POINTER: Final = "only the Git LFS pointer to the file; `git lfs pull` fetches the file"
+"""What an error says of such a pointer."""
 
 GIVEN: Final = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
 """Paths of a shell's process substitution, as in ``--params-file <(xacro ...)``, which may be
@@ -33,7 +39,7 @@ def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
         most: The largest size in bytes.
 
     Raises:
-        OSError: it cannot be read, is not a file, or is larger.
+        OSError: it cannot be read, is not a file, is larger, or is the pointer of Git LFS.
     """
     name = os.fspath(path)
     is_given = name.startswith(GIVEN)
@@ -53,4 +59,11 @@ def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
         os.close(descriptor)
     if len(content) > most:
         raise OSError(errno.EFBIG, f"more than {most} bytes", name)
+    if is_lfs_pointer(content):
+        raise OSError(errno.EINVAL, LFS_POINTER, name)
     return content
+
+
+def is_lfs_pointer(content: bytes) -> bool:
+    """Return whether the content of a file is what Git LFS leaves until it has fetched the file."""
+    return content.startswith(LFS)

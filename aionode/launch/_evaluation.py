@@ -148,7 +148,7 @@ def module_in(path: str) -> Any:
     wrote = sys.dont_write_bytecode
     sys.dont_write_bytecode = True  # a launch file leaves no .pyc file behind
     try:
-        code = compile(Path(path).read_bytes(), str(path), "exec")
+        code = compile(text_of(path), str(path), "exec")
         with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
     except Exception as error:
         raise failure(path, error) from error

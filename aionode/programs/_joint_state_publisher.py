@@ -6,11 +6,11 @@ import argparse
 import math
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import aionode
 from aionode import DurabilityPolicy, Node, QoSProfile
+from aionode._process.bounded_files import read_file
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
@@ -90,7 +90,7 @@ class JointStatePublisher(Node):
         self.given_followers = self._given_followers()
         if file is not None:
             try:
-                self.use(Path(file).read_text(encoding="utf-8"))
+                self.use(read_file(file).decode())
             except (OSError, ValueError) as error:
                 raise CommandError(f"{file}: {error}") from None
         else:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import aionode
 from aionode import DurabilityPolicy, Node, Parameter, QoSProfile
+from aionode._process.bounded_files import read_file
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
 from aionode.interfaces.builtin_interfaces.msg import Time
@@ -74,7 +74,7 @@ class RobotStatePublisher(Node):
             "in the future."
         )
         try:
-            text = Path(file).read_text(encoding="utf-8")
+            text = read_file(file).decode()
         except (OSError, UnicodeDecodeError) as error:
             raise CommandError(f"Failed to open URDF file: {file}: {error}") from None
         self.set_parameters([Parameter("robot_description", value=text)])

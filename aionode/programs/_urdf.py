@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 from xml.etree import ElementTree as ET
 
+from aionode._process.bounded_files import LFS_POINTER, is_lfs_pointer
 from aionode.tf.apply import Pose, composed, from_angles
 
 __all__ = ["Joint", "Mimic", "Robot"]
@@ -90,6 +91,8 @@ class Robot:
         Raises:
             ValueError: It is not valid URDF; the text says why.
         """
+        if is_lfs_pointer(text.encode(errors="replace")):
+            raise ValueError(f"it is {LFS_POINTER}")
         if len(text) > MAX_BYTES:
             raise ValueError(f"it has {len(text)} characters; {MAX_BYTES} at most")
         if "<!ENTITY" in text:

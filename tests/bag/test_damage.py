@@ -399,7 +399,7 @@ def test_the_pointer_of_git_lfs_is_called_one(tmp_path: Path) -> None:
         assert (tmp_path / "run" / name).read_text() == pointer
     place = tmp_path / "run" / "metadata.yaml"
     place.write_text(pointer)
-    with pytest.raises(BagError, match="Git LFS"):
+    with pytest.raises(BagError, match="only the Git LFS pointer to the file; `git lfs pull`"):
         bag.open(tmp_path / "run")
 
 

@@ -13,6 +13,7 @@ import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
 
+from aionode._process.bounded_files import LFS_POINTER, is_lfs_pointer
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ __all__ = [
     "LIMIT_VARIABLE",
     "TooLargeError",
     "decompressed",
-    "expect_no_pointer",
     "expect_plain_size",
     "plain_file",
     "plain_message",
@@ -40,9 +40,6 @@ LIMIT_VARIABLE: Final = "AIONODE_BAG_LARGEST_BYTES"
 PART_RATIO: Final = 20
 FILE_RATIO: Final = 100
 PIECE: Final = 1 << 20
-
-LFS: Final = b"version https://git-lfs.github.com/spec/"
-"""The start of the pointer file that Git LFS puts in place of a large file."""
 
 
 class TooLargeError(McapError):
@@ -118,7 +115,8 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
     if not stat.S_ISREG(state.st_mode):
         raise BagError(str(path), "it is a folder, a pipe or a device", "give a file")
     file = stack.enter_context(path.open("rb"))
-    expect_no_pointer(path, file.peek(len(LFS)))
+    if is_lfs_pointer(file.peek()):
+        raise BagError(str(path), f"it is {LFS_POINTER}")
     if path.suffix != ".zstd":
         return path, file
     folder = Path(stack.enter_context(TemporaryDirectory(prefix="aionode-bag-")))
@@ -136,16 +134,6 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
             "decompress it with `zstd -d` where there is space, or set TMPDIR",
         ) from error
     return plain, stack.enter_context(plain.open("rb"))
-
-
-def expect_no_pointer(path: Path, content: bytes) -> None:
-    """Raise `BagError` if the content of a file is a Git LFS pointer."""
-    if content.startswith(LFS):
-        raise BagError(
-            str(path),
-            "it is only the Git LFS pointer to the file",
-            "`git lfs pull` fetches the file",
-        )
 
 
 def write_plain(path: Path, compressed: IO[bytes], plain: Path, most: int) -> None:

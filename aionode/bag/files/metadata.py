@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
-from aionode._process.bounded_files import read_file
+from aionode._process.bounded_files import LFS_POINTER, read_file
 from aionode._process.bounded_yaml import loaded_yaml
-from aionode.bag.files.compression import expect_no_pointer
 from aionode.bag.files.qos import readable_profiles, to_builtins, yaml_text
 from aionode.bag.files.record import TopicInfo
 from aionode.errors import BagError
@@ -137,9 +136,7 @@ def read_metadata(folder: Path) -> dict[str, Any]:
     """
     path = folder / FILE_NAME
     try:
-        text = read_file(path)
-        expect_no_pointer(path, text)
-        content = loaded_yaml(text)
+        content = loaded_yaml(read_file(path))
         metadata: dict[str, Any] = dict(content[ROOT])
         metadata["relative_file_paths"] = [str(name) for name in metadata["relative_file_paths"]]
         metadata["storage_identifier"] = str(metadata["storage_identifier"])
@@ -149,9 +146,9 @@ def read_metadata(folder: Path) -> dict[str, Any]:
         raise BagError(
             str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` creates one"
         ) from error
-    except BagError:
-        raise
     except (OSError, yaml.YAMLError, LookupError, TypeError, ValueError) as error:
+        if isinstance(error, OSError) and error.strerror == LFS_POINTER:
+            raise BagError(str(path), f"it is {LFS_POINTER}") from None
         what = " ".join(str(error).split())
         problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {what})"
         raise BagError(str(folder), problem, "`aionode bag reindex` rebuilds it") from error

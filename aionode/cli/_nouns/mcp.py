@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 import msgspec
 
+from aionode._process.bounded_files import read_file
 from aionode.cli._support.options import in_environment, interfaces_option, json_option
 from aionode.cli._support.session import run_verb
 from aionode.errors import CommandError
@@ -138,7 +139,7 @@ def checked(ctx: click.Context, options: dict[str, Any]) -> dict[str, Any]:
     about = options["about"]
     if about.startswith("@"):
         try:
-            options["about"] = Path(about[1:]).read_text(encoding="utf-8")
+            options["about"] = read_file(about[1:]).decode()
         except (OSError, UnicodeError) as error:
             raise CommandError(f"--about: {about[1:]}: cannot be read: {error}") from error
     if options["bags"] and not Path(options["bags"]).is_dir():

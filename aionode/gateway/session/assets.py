@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import unquote
 
 from aionode._packages import here, package_of
-from aionode._process.bounded_files import read_file
+from aionode._process.bounded_files import LFS_POINTER, read_file
 from aionode._process.concurrency import run_in_thread
 from aionode.errors import MessageError, PackageNotFoundError
 
@@ -71,7 +71,9 @@ async def read_asset(session: Session, name: str) -> bytes:
             if isinstance(error, OSError) and error.errno == errno.EFBIG:
                 reason = f"it has more than {most} bytes, the max_bytes of its rule"
                 raise rights.refusal("asset", name, reason, "too_large") from None
-            raise FileNotFoundError(f"{name[:200]}: the package has no such file") from None
+            is_pointer = isinstance(error, OSError) and error.strerror == LFS_POINTER
+            problem = f"it is {LFS_POINTER}" if is_pointer else "the package has no such file"
+            raise FileNotFoundError(f"{name[:200]}: {problem}") from None
 
 
 def content_of(package: str, parts: list[str], most: int) -> bytes:

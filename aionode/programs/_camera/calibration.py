@@ -11,6 +11,7 @@ import yaml
 
 from aionode import Node
 from aionode._packages import here
+from aionode._process.bounded_files import read_file
 from aionode.errors import PackageNotFoundError
 from aionode.interfaces.sensor_msgs.msg import CameraInfo
 from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
@@ -100,7 +101,7 @@ class Calibration:
             return
         self.log.info(f"camera calibration URL: {url or USUAL}")
         try:
-            self.info = info_of(path.read_text(encoding="utf-8"))
+            self.info = info_of(read_file(path).decode())
         except FileNotFoundError:
             self.log.warning(f"Camera calibration file {path} not found")
         except (OSError, ValueError) as error:
