@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import ast
+import operator
+import os
 import sys
 from collections import deque
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from aionode._packages import around
 from aionode.idl.search import has_interfaces, module_name, names_in
@@ -22,17 +26,47 @@ __all__ = ["check"]
 HIDDEN: Final = ("build", "install", "log", "node_modules", "site-packages")
 """Folders of a workspace without sources, like those that begin with a dot."""
 
+FACTS: Final[dict[str, Any]] = {
+    "sys.version_info": tuple(sys.version_info),
+    "sys.version_info[:2]": sys.version_info[:2],
+    "sys.version_info[0]": sys.version_info[0],
+    "sys.version_info.major": sys.version_info.major,
+    "sys.version_info.minor": sys.version_info.minor,
+    "sys.platform": sys.platform,
+    "os.name": os.name,
+}
+"""What conditions compare to import what this Python or this system has."""
+
+COMPARISONS: Final[dict[type[ast.cmpop], Callable[[Any, Any], Any]]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.In: lambda value, values: value in values,
+    ast.NotIn: lambda value, values: value not in values,
+}
+
+ENDS: Final = ("sys.exit", "exit", "quit", "os._exit")
+"""Functions that end a program."""
+
 
 @dataclass(frozen=True)
 class Import:
     """A module that a program imports, and the name it imports from there, if any.
 
-    A relative module name begins with dots, as in the program.
+    Attributes:
+        module: The module; a relative name begins with dots, as in the program.
+        name: The name that is imported from it; empty if none is.
+        optional: Whether the program has another way where it is missing.
+        instead_of: Imports in whose place this one happens: in each set one has failed.
     """
 
     module: str
     name: str = ""
     optional: bool = False
+    instead_of: tuple[frozenset[Import], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,17 +143,21 @@ def report_on(file: Path) -> Report:
     except (OSError, SyntaxError, ValueError) as error:
         return Report([f"  cannot be read: {error}"], is_complete=False)
     listed: dict[str, str] = {}
+    missing: set[Import] = set()
     report = Report([])
     for wanted in imports_of(tree):
-        if wanted.module.partition(".")[0] in sys.stdlib_module_names:
+        if is_in_python(wanted.module):
             continue
+        optional = wanted.optional or any(missing.isdisjoint(first) for first in wanted.instead_of)
         finding = find(wanted, file)
-        (report.optional if wanted.optional else report.needed).extend(finding.files)
+        sources = [file for file in finding.files if file.suffix == ".py"]
+        (report.optional if optional else report.needed).extend(sources)
         if finding.is_there:
             listed[finding.shown] = finding.where
             continue
-        listed[finding.shown] = f"missing{', optional' * wanted.optional}: {finding.where}"
-        report.is_complete = report.is_complete and wanted.optional
+        missing.add(wanted)
+        listed[finding.shown] = f"missing{', optional' * optional}: {finding.where}"
+        report.is_complete = report.is_complete and optional
     listed.pop("", None)
     width = max(map(len, listed), default=0)
     report.lines += [f"  {shown:{width}}  {where}" for shown, where in sorted(listed.items())]
@@ -146,6 +184,12 @@ def imports_of(tree: ast.Module) -> list[Import]:
     return list(dict.fromkeys(imported(tree, optional=False)))
 
 
+def is_in_python(module: str) -> bool:
+    """Return whether a module belongs to Python's library, and to that of this system."""
+    top = module.partition(".")[0]
+    return top in sys.stdlib_module_names and find_spec(top) is not None
+
+
 def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
     """Yield the imports in a part of a program."""
     match node:
@@ -157,13 +201,15 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
                 Import(module, "" if alias.name == "*" else alias.name, optional=optional)
                 for alias in node.names
             )
-        case ast.If() if is_for_types(node.test):
-            for statement in node.orelse:
+        case ast.Call(func=called, args=[ast.Constant(value=str(module)), *_]) if ast.unparse(
+            called
+        ).rpartition(".")[2] in {"import_module", "__import__"}:
+            yield Import(module, optional=optional)
+        case ast.If():
+            for statement in taken(node):
                 yield from imported(statement, optional=optional)
-        case ast.Try() if any(catches_import_error(handler.type) for handler in node.handlers):
-            # The replacement of a missing module is needed only if the module is missing.
-            for part in ast.iter_child_nodes(node):
-                yield from imported(part, optional=True)
+        case ast.Try() if any(map(goes_on_without, node.handlers)):
+            yield from tried(node, optional=optional)
         case ast.With() if any(is_suppressing(item.context_expr) for item in node.items):
             for statement in node.body:
                 yield from imported(statement, optional=True)
@@ -172,10 +218,54 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
                 yield from imported(part, optional=optional)
 
 
-def is_for_types(test: ast.expr) -> bool:
-    """Return whether a condition is ``TYPE_CHECKING``, as a name or an attribute of a module."""
-    name = test.attr if isinstance(test, ast.Attribute) else getattr(test, "id", None)
-    return name == "TYPE_CHECKING"
+def tried(node: ast.Try, *, optional: bool) -> Iterator[Import]:
+    """Yield the imports of a part of a program that goes on where one of them fails."""
+    first = [each for part in node.body for each in imported(part, optional=True)]
+    yield from first
+    for handler in node.handlers:
+        for each in imported(handler, optional=optional):
+            yield replace(each, instead_of=(frozenset(first), *each.instead_of))
+    for part in (*node.orelse, *node.finalbody):
+        yield from imported(part, optional=True)
+
+
+def taken(node: ast.If) -> list[ast.stmt]:
+    """Return the statements below a condition that may run here."""
+    holds = known(node.test)
+    return node.body * (holds is not False) + node.orelse * (holds is not True)
+
+
+def known(test: ast.expr) -> bool | None:
+    """Return what a condition about Python or the system is here; None for any other."""
+    match test:
+        case ast.Constant():
+            return bool(test.value)
+        case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
+            return False
+        case ast.UnaryOp(op=ast.Not(), operand=inner):
+            holds = known(inner)
+            return None if holds is None else not holds
+        case ast.Call(func=ast.Attribute(attr="startswith"), args=[ast.Constant(value=str(head))]):
+            return sys.platform.startswith(head) if "sys.platform" in ast.unparse(test) else None
+        case ast.Compare(left=left, ops=[op], comparators=[right]):
+            fact, compare = FACTS.get(ast.unparse(left)), COMPARISONS.get(type(op))
+            if fact is not None and compare is not None:
+                with suppress(ValueError, TypeError):
+                    return bool(compare(fact, ast.literal_eval(right)))
+    return None
+
+
+def goes_on_without(handler: ast.ExceptHandler) -> bool:
+    """Return whether a program that cannot import something goes on after a handler."""
+    return catches_import_error(handler.type) and not any(
+        isinstance(last, ast.Raise)
+        or (
+            isinstance(last, ast.Expr)
+            and isinstance(last.value, ast.Call)
+            and ast.unparse(last.value.func) in ENDS
+        )
+        for last in handler.body
+    )
 
 
 def catches_import_error(caught: ast.expr | None) -> bool:

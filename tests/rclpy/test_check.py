@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import pytest
@@ -242,3 +243,64 @@ def test_the_own_modules_of_a_program_are_followed(
     assert f"{program.parent / 'own' / 'part.py'}\n  nothing_at_all  missing: " in text
     assert f"{program.parent / 'own' / '__init__.py'}\n  numpy  installed\n" in text
     assert complete is is_optional
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        (
+            "try:\n    import nothing_a\nexcept ImportError:\n    import nothing_b\n",
+            {"nothing_a": "missing, optional", "nothing_b": "missing"},
+        ),
+        (
+            (
+                "import sys\ntry:\n    import nothing_a\nexcept ImportError as error:\n"
+                "    print(error)\n    sys.exit(1)\n"
+            ),
+            {"nothing_a": "missing"},
+        ),
+        (
+            (
+                "try:\n    import nothing_a\nexcept ImportError as error:\n"
+                "    raise RuntimeError from error\n"
+            ),
+            {"nothing_a": "missing"},
+        ),
+        ("import importlib\nimportlib.import_module('nothing_a')\n", {"nothing_a": "missing"}),
+        ("import msvcrt\n", {"msvcrt": "missing"}),
+    ],
+    ids=["no way is there", "exits", "raises", "by a function", "of another system"],
+)
+def test_what_ends_the_program_is_not_called_optional(
+    program: Path, source: str, found: dict[str, str]
+) -> None:
+    """The status of the check would say that it runs."""
+    assert findings(program, source) == (found, False)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "try:\n    import sys\nexcept ImportError:\n    import nothing_a\n",
+        (
+            "try:\n    import numpy\nexcept ImportError:\n    try:\n        import nothing_a\n"
+            "    except ImportError:\n        import nothing_b\n"
+        ),
+        "import sys\nif sys.version_info < (3, 8):\n    import nothing_a\n",
+        "import os\nif os.name == 'nt':\n    import msvcrt\nelse:\n    import termios\n",
+        "import sys\nif not sys.platform.startswith('linux'):\n    import nothing_a\n",
+        "if False:\n    import nothing_a\n",
+    ],
+)
+def test_what_does_not_happen_here_is_not_missed(program: Path, source: str) -> None:
+    """Programs have imports for older versions of Python, for other systems, and in reserve."""
+    _, complete = findings(program, source)
+
+    assert complete
+
+
+def test_a_compiled_module_beside_the_program_is_there(program: Path) -> None:
+    """It is no source that could be examined."""
+    (program.parent / f"fast{EXTENSION_SUFFIXES[0]}").write_bytes(b"\0")
+
+    assert findings(program, "import fast\n") == ({"fast": "beside the program"}, True)
