@@ -716,3 +716,18 @@ async def test_the_page_shows_the_stream(web: httpx.AsyncClient) -> None:
     response = await web.get("/")
 
     assert 'EventSource("/messages")' in response.text
+
+
+def test_a_driver_says_how_it_is(domain: int) -> None:
+    """Its temperature, and how its scans are, on /diagnostics."""
+    waits = ("--once", "--filter", "len(m.status) > 1")
+    topic = ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+    with (
+        running("examples/diagnostics.py", domain=domain),
+        running("-m", "aionode", "topic", "echo", *waits, *topic, domain=domain) as echo,
+    ):
+        text = echo.rest()
+
+    assert "lidar: temperature" in text
+    assert "as warm as it should be" in text
+    assert "lidar: /scan topic status" in text

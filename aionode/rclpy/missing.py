@@ -12,7 +12,7 @@ INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)")
 """The pattern of names of packages that define interfaces, by any author."""
 
 PURE_PYTHON: Final = """
-    action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics diagnostic_updater
+    action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics
     interactive_markers joint_state_publisher laser_geometry
     nav2_simple_commander py_trees_ros rclpy_message_converter
     resource_retriever ros2action ros2cli ros2component ros2doctor ros2interface

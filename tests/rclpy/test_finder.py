@@ -75,6 +75,7 @@ def test_the_module_of_one_message_is_there() -> None:
         ("cv_bridge", "CvBridge"),
         ("cv_bridge.core", "CvBridgeError"),
         ("cv_bridge.boost.cv_bridge_boost", "cvtColor2"),
+        ("diagnostic_updater", "Updater"),
         ("message_filters", "ApproximateTimeSynchronizer"),
         ("ros2_numpy", "numpify"),
         ("rosbag2_py", "SequentialReader"),
