@@ -1,6 +1,6 @@
 """Read YAML from others with PyYAML, within limits of size, depth and number.
 
-A few lines with aliases of aliases stand for billions of values, deep nesting crashes the process
+A few lines with aliases of aliases expand to billions of values, deep nesting crashes the process
 inside libyaml, and a long number with colons takes minutes to parse; so text from a file is checked
 first.
 """
@@ -27,14 +27,15 @@ LARGEST_TEXT: Final = 8 << 20
 """Maximum size of a text, in bytes."""
 
 MOST_VALUES: Final = 80_000
-"""Maximum values and keys, about a second's work; each alias counts as all that it stands for."""
+"""Maximum values and keys, about a second's work; an alias counts as all values that it expands
+to."""
 
 VALUES_VARIABLE: Final = "AIONODE_YAML_VALUES"
 """The environment variable that sets another limit."""
 
 DEEPEST: Final = 100
 LONGEST_NUMBER: Final = 400
-"""Maximum length of a number, as parsing base 60 takes time with the square of the length."""
+"""Maximum length of a number, because parsing base 60 takes quadratic time."""
 
 FROM_CONSTRUCTORS: Final = (
     ArithmeticError,
@@ -65,7 +66,7 @@ def checked_yaml(text: str | bytes) -> None:
         for event in yaml.parse(text, fast_loader()):
             seen.add(event)
     except ValueError as error:  # a lone surrogate
-        raise yaml.MarkedYAMLError(problem=f"no text: {error}") from error
+        raise yaml.MarkedYAMLError(problem=f"not text: {error}") from error
 
 
 class Seen:
@@ -75,7 +76,7 @@ class Seen:
         self.count = 0
         self.most = most_values()
         self.sizes: dict[str | None, int] = {}
-        """How many values each anchor stands for."""
+        """The number of values that each anchor expands to."""
         self.open: list[tuple[str | None, int]] = []
         """The anchors of the open collections, and the count before each."""
 
@@ -97,7 +98,7 @@ class Seen:
             expect_short(event)
         if self.count > self.most:
             what = (
-                f"more than {self.most} values, where aliases count as what they stand for; "
+                f"more than {self.most} values, counting the values of each alias; "
                 f"{VALUES_VARIABLE} raises the limit"
             )
         elif len(self.open) > DEEPEST:
@@ -107,11 +108,11 @@ class Seen:
         raise yaml.MarkedYAMLError(problem=what, problem_mark=event.start_mark)
 
     def expect_closed(self, alias: Any) -> None:
-        """Raise `yaml.YAMLError` for an alias inside its own value, which would have no end."""
+        """Raise `yaml.YAMLError` for an alias inside its own value, which would be infinite."""
         import yaml
 
         if any(anchor == alias.anchor for anchor, _ in self.open):
-            problem = f"the alias *{alias.anchor} is within what it stands for"
+            problem = f"the alias *{alias.anchor} is within its own value"
             raise yaml.MarkedYAMLError(problem=problem, problem_mark=alias.start_mark)
 
 

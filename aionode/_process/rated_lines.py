@@ -1,4 +1,4 @@
-"""Lines of the log about what happens again and again: the first one, and then how many more."""
+"""Log lines about repeated events: the first one, and then how many more."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["MOST_WAIT_NS", "WAIT_NS", "RatedLines"]
 K = TypeVar("K", bound=Hashable)
 
 WAIT_NS: Final = 10_000_000_000
-"""The time between two lines about the same subject; while it goes on, it doubles."""
+"""The time between two lines about the same subject; it doubles while the events continue."""
 
 MOST_WAIT_NS: Final = 640_000_000_000
 
 
 @dataclass(slots=True)
 class Line:
-    """What was said of one subject: when it may be said again, and how much was not said."""
+    """The log lines about one subject: when it may be logged again, and the number not logged."""
 
     due_ns: int
     wait_ns: int = WAIT_NS
@@ -28,17 +28,17 @@ class Line:
 
 
 class RatedLines(Generic[K]):
-    """Decides what of something that others cause is logged, so that nobody can fill the log.
+    """Limits log lines about events that others cause, so that nobody can fill the log.
 
-    The first of each subject is, and then how many more there were: after 10 s, 20 s and so on. A
-    subject that was quiet for longer begins anew.
+    The first event of each subject is logged, and then how many more there were: after 10 s, 20 s
+    and so on. A subject that was quiet for longer starts over.
 
-    Any thread may note something: of two at the same moment one may not be counted, which does no
+    Any thread may record an event: of two at the same moment one may not be counted, which does no
     harm.
 
     Args:
         now_ns: Returns the time of a steady clock, in nanoseconds.
-        most: How many subjects are remembered: others may invent any.
+        most: Number of subjects that are remembered, since others may invent any.
     """
 
     def __init__(self, now_ns: Callable[[], int], most: int = 1_000) -> None:
@@ -48,13 +48,13 @@ class RatedLines(Generic[K]):
     def note(
         self, subject: K, count: int = 1, *, has_room: Callable[[], bool] | None = None
     ) -> str | None:
-        """Return how a line about a subject ends that is to be logged now; None for no line.
+        """Return the end of the line to log now about a subject; None for no line.
 
         Args:
             subject: What it is about.
             count: How many happened at once.
-            has_room: Asked before a line that would be logged; false leaves it out. A new subject
-                is not remembered then.
+            has_room: Called before a line is logged; if it returns false, the line is omitted, and
+                a new subject is not remembered.
         """
         now_ns, line = self._now_ns(), self._lines.get(subject)
         if line is not None and now_ns < line.due_ns:

@@ -1,4 +1,4 @@
-"""Stands in for Python modules that are not there: what a launch file makes of them is left out."""
+"""Stand-ins for missing Python modules; actions that launch files create from them are skipped."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ __all__ = ["StandIn", "forget_stand_ins", "missing_module", "with_stand_ins"]
 T = TypeVar("T")
 
 MAX_MODULES: Final = 50
-"""Most modules of one process that have stand-ins."""
+"""Number of modules of one process that may have stand-ins."""
 
 
 class StandIn(LaunchDescriptionEntity):
-    """What a launch file takes from a module that is not there, or makes of it.
+    """An object that a launch file takes from a missing module, or creates with it.
 
-    It has every attribute, can be called, and is no number, list or text; as text it is a path that
-    does not exist, so that what cannot do without it says which module it is.
+    It has every attribute and can be called, and is not a number, list or text; as text it is a
+    path that does not exist, so that code that cannot do without it names the missing module.
     """
 
     def __init__(self, name: str) -> None:
         self.__name = name
-        frame = sys._getframe(1)  # where the launch file asked for it
+        frame = sys._getframe(1)  # where the launch file imported it
         while frame.f_back is not None and frame.f_code.co_filename == __file__:
             frame = frame.f_back
         self._LaunchDescriptionEntity__where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
 
     def visit(self, context: LaunchContext) -> NoReturn:  # noqa: ARG002  # as of other entities
-        """Refuse to be started.
+        """Refuse to be executed.
 
         Raises:
             PackageNotFoundError: Always.
@@ -45,12 +45,12 @@ class StandIn(LaunchDescriptionEntity):
         raise PackageNotFoundError(package_of(self.__name), (), ())
 
     def describe(self) -> str:
-        """Return what the launch file asked for."""
+        """Return the name that the launch file used."""
         return self.__name
 
     def __getattr__(self, name: str) -> StandIn:
         if name.startswith("__") and name.endswith("__"):
-            raise AttributeError(name)  # a protocol that it does not have
+            raise AttributeError(name)  # a protocol that it does not implement
         return StandIn(f"{self.__name}.{name}")
 
     def __call__(self, *_: Any, **__: Any) -> StandIn:
@@ -93,13 +93,13 @@ class StandInModule(ModuleType):
 
 
 class StandInFinder(MetaPathFinder, Loader):
-    """Finds the modules that are not there otherwise, and have been asked for."""
+    """Finds modules that are otherwise missing, and that were requested."""
 
     def __init__(self) -> None:
         self.packages: set[str] = set()
 
     def find_spec(self, fullname: str, *_: Any) -> ModuleSpec | None:
-        """Return how a stand-in is made; None for any other module."""
+        """Return the spec of a stand-in; None for any other module."""
         if package_of(fullname) not in self.packages:
             return None
         return ModuleSpec(fullname, self, is_package=True)
@@ -109,28 +109,28 @@ class StandInFinder(MetaPathFinder, Loader):
         return StandInModule(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Do nothing: it has every name already."""
+        """Do nothing: the module already has every name."""
 
 
 FINDER: Final = StandInFinder()
 
 
 def forget_stand_ins() -> None:
-    """Let the modules that are not there be missing again."""
+    """Make the modules with stand-ins missing again."""
     FINDER.packages.clear()
     for name in [name for name, module in sys.modules.items() if isinstance(module, StandInModule)]:
         del sys.modules[name]
 
 
 def package_of(name: str) -> str:
-    """Return the first part of the name of a module, or of what is in it."""
+    """Return the first part of the name of a module, or of an object in it."""
     return name.partition(".")[0]
 
 
 def missing_module(error: BaseException) -> str | None:
-    """Return the package whose module was not found, if that may have a stand-in.
+    """Return the package whose module was not found, if it may have a stand-in.
 
-    A module of a package that is there is a mistake.
+    A missing module of a package that exists is a mistake.
     """
     if not isinstance(error, ModuleNotFoundError) or error.name is None:
         return None
@@ -139,9 +139,9 @@ def missing_module(error: BaseException) -> str | None:
 
 
 def with_stand_ins(run: Callable[[], T]) -> T:
-    """Return what a function returns; a module that it does not find gets a stand-in, if wanted.
+    """Return the result of a function; a module that it does not find gets a stand-in, if wanted.
 
-    The function is called anew then: what it can do without, it has had the chance to.
+    The function is then called again, since it might have been able to do without the module.
     """
     while True:
         try:

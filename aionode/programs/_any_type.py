@@ -61,7 +61,9 @@ class AnyTypeNode(Node):
         """
         parameter = self.declare_parameter(name, kind)
         if parameter.type_ is ParameterType.NOT_SET:
-            raise CommandError(f"parameter '{name}' is needed: give it, or the argument for it")
+            raise CommandError(
+                f"parameter '{name}' is required: set it, or pass the argument for it"
+            )
         return parameter.value
 
     def declare_topics(self, suffix: str) -> None:
@@ -71,8 +73,8 @@ class AnyTypeNode(Node):
         self.is_lazy = self.declare_parameter("lazy", False).value
         if self.resolve_topic_name(self.input_topic) == self.resolve_topic_name(self.output_topic):
             raise CommandError(
-                f"{self.output_topic}: input and output are one topic, so each message would come "
-                "again without end"
+                f"{self.output_topic}: input and output are the same topic, so each message "
+                "would return endlessly"
             )
 
     def process(self, data: bytes) -> None:
@@ -168,4 +170,4 @@ def given_number(text: str, kind: type[int | float], name: str) -> int | float:
     try:
         return kind(text)
     except ValueError:
-        raise CommandError(f"{name} is {text!r}; a number fits") from None
+        raise CommandError(f"{name} is {text!r}; use a number") from None

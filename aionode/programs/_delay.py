@@ -13,7 +13,7 @@ from aionode.programs._any_type import AnyTypeNode, given_number
 __all__ = ["MOST_BYTES", "Delay", "main"]
 
 MOST_BYTES = 512_000_000
-"""Limit of the bytes of waiting messages; beyond it the oldest are dropped."""
+"""Maximum bytes of waiting messages; beyond that, the oldest are dropped."""
 
 
 class Delay(AnyTypeNode):

@@ -74,7 +74,7 @@ class JointStatePublisher(Node):
         file: A file with the description, instead of waiting for it.
 
     Raises:
-        CommandError: There is no such file, it is no URDF, or a parameter does not fit.
+        CommandError: There is no such file, it is not a URDF, or a parameter is invalid.
     """
 
     def __init__(self, file: str | None = None) -> None:
@@ -104,7 +104,7 @@ class JointStatePublisher(Node):
         self.publisher = self.create_publisher(JointState, "joint_states", 10)
         rate = self.value("rate")
         if not isinstance(rate, int | float) or not 0 < rate < math.inf:
-            raise CommandError(f"rate is {rate!r}; a number above 0 fits")
+            raise CommandError(f"rate is {rate!r}; use a number above 0")
         self.create_timer(1.0 / rate, self.publish)
 
     def value(self, name: str) -> Any:
@@ -141,7 +141,7 @@ class JointStatePublisher(Node):
         """Use a description.
 
         Raises:
-            ValueError: It is no URDF.
+            ValueError: It is not a URDF.
         """
         robot = Robot.of(text)
         moved = [joint for joint in robot.joints.values() if joint.is_moved]
@@ -151,7 +151,7 @@ class JointStatePublisher(Node):
             if joint.mimic is not None and self.value("use_mimic_tags")
         } | {name: given for name, given in self.given_followers.items() if name in robot.joints}
         for name in followers:
-            leader(name, followers)  # refuses those that follow each other
+            leader(name, followers)  # refuses joints that follow each other
         self.joints = [joint.name for joint in moved]
         self.followers = followers
         self.states = {

@@ -41,7 +41,7 @@ class Manager(Node):
         super().__init__("lifecycle_manager")
         names = self.declare_parameter("node_names", Parameter.Type.STRING_ARRAY)
         if not names.value:
-            raise CommandError("parameter 'node_names' is needed: the nodes to manage, in order")
+            raise CommandError("parameter 'node_names' is required: the nodes to manage, in order")
         self.names = list(names.value)
         self.starts_itself = self.declare_parameter("autostart", False).value
         self.bond_timeout = self.declare_parameter("bond_timeout", 4.0).value

@@ -101,7 +101,7 @@ class Selector(AnyTypeNode):
                 f"tried to add a topic that {self.tool} was already listening to: [{topic}]"
             )
         else:
-            self.resolve_topic_name(topic)  # refuses what is no name, and its client is told
+            self.resolve_topic_name(topic)  # refuses invalid names, and its client gets the reason
             self.topics.append(topic)
             log.info(f"added {topic} to {self.tool}")
             response.success = True

@@ -39,7 +39,7 @@ class RelayField(Transform):
             raise CommandError(f"Wrong expression: {arguments.expression}: {error}") from None
         if not isinstance(template, dict):
             raise CommandError(
-                f"Wrong expression: {arguments.expression}: fields fit, such as '{{data: m.x}}'"
+                f"Wrong expression: {arguments.expression}: use fields, such as '{{data: m.x}}'"
             )
 
         def filled(message: Any) -> Any:
@@ -62,7 +62,7 @@ class RelayField(Transform):
             elif (name, value) == ("header", "auto"):
                 values[name] = {"stamp": to_builtins(self.get_clock().now().to_msg())}
             elif isinstance(value, str):
-                with suppress(NameError, SyntaxError):  # it is a text
+                with suppress(NameError, SyntaxError):  # it is plain text
                     values[name] = plain(eval(value, {}, {"m": message}))  # noqa: S307  # as in transform
         return values
 

@@ -32,7 +32,7 @@ class RobotStatePublisher(Node):
         file: A file with the description, if the parameter `robot_description` is not set.
 
     Raises:
-        CommandError: There is no description, or it is no URDF.
+        CommandError: There is no description, or it is not a URDF.
     """
 
     def __init__(self, file: str | None = None) -> None:
@@ -53,7 +53,7 @@ class RobotStatePublisher(Node):
         try:
             self.use(text)
         except ValueError as error:
-            raise CommandError(f"robot_description is no URDF: {error}") from None
+            raise CommandError(f"robot_description is not a URDF: {error}") from None
         self.create_subscription(
             JointState,
             "joint_states",
@@ -84,7 +84,7 @@ class RobotStatePublisher(Node):
         """Use a description, and publish it and the fixed joints.
 
         Raises:
-            ValueError: It is no URDF.
+            ValueError: It is not a URDF.
         """
         self.robot = Robot.of(text)
         self.description.publish(String(data=text))
@@ -114,7 +114,7 @@ class RobotStatePublisher(Node):
         )
 
     def on_joints(self, state: JointState) -> None:
-        """Publish the poses of links, unless that was done less than a period ago."""
+        """Publish the poses of links, unless they were published less than a period ago."""
         if len(state.name) != len(state.position):
             if len(state.position):
                 self.get_logger().error(

@@ -76,7 +76,7 @@ class Given:
         """Parse arguments in either style.
 
         Raises:
-            ValueError: They do not fit.
+            ValueError: They are invalid.
         """
         options, others = separated(args)
         values = options

@@ -50,23 +50,23 @@ MOVES: Final[dict[str, tuple[int, int, int, int]]] = {
     "U": (1, 1, 0, 0), "<": (-1, 0, 0, 0), ">": (-1, -1, 0, 0), "M": (-1, 1, 0, 0),
     "t": (0, 0, 1, 0), "b": (0, 0, -1, 0),
 }  # fmt: skip
-"""How each key moves: along x, y and z, and around z."""
+"""The direction of each key: along x, y and z, and around z."""
 
 FACTORS: Final[dict[str, tuple[float, float]]] = {
     "q": (1.1, 1.1), "z": (0.9, 0.9), "w": (1.1, 1.0), "x": (0.9, 1.0), "e": (1.0, 1.1),
     "c": (1.0, 0.9),
 }  # fmt: skip
-"""By what each key multiplies the speed, and the speed of turning."""
+"""The factors of each key for the linear and the angular speed."""
 
 REPEAT_SEC: Final = 0.1
-"""How often a command is published while it stands."""
+"""Interval at which the current command is published."""
 
 TTL_SEC: Final = 0.3
-"""After how long the wheels stop if this program does nothing any more."""
+"""Time without a command after which the wheels stop."""
 
 
 class Keys:
-    """What keys have said.
+    """The command set by the keys.
 
     Args:
         speed: In m/s.
@@ -80,7 +80,7 @@ class Keys:
 
     @property
     def is_moving(self) -> bool:
-        """Whether the robot is to move."""
+        """Whether the robot should move."""
         return any(self.move)
 
     @property
@@ -91,7 +91,7 @@ class Keys:
         return Twist(linear=linear, angular=Vector3(z=around * self.turn))
 
     def press(self, key: str) -> str | None:
-        """Take a key; return the speeds if it has changed them."""
+        """Handle a key; return the speeds if it has changed them."""
         if key not in FACTORS:
             self.move = MOVES.get(key, (0, 0, 0, 0))
             return None
@@ -105,15 +105,15 @@ class Keys:
 
 
 class Teleop(Node):
-    """Publishes on `cmd_vel` what keys say, again and again, under a lease.
+    """Publishes on `cmd_vel` the command of the keys, repeatedly, under a lease.
 
-    While the robot is to stand, nothing is published, so that others may command it.
+    While the robot stands still nothing is published, so that others may command it.
 
     Args:
         show: Called with texts for the user.
 
     Raises:
-        CommandError: A frame is given for commands without a header.
+        CommandError: A frame was given for commands without a header.
     """
 
     def __init__(self, show: Callable[[str], object]) -> None:
@@ -135,17 +135,17 @@ class Teleop(Node):
         self.create_timer(REPEAT_SEC, self.is_due.set)
 
     def press(self, key: str) -> None:
-        """Take a key, and publish what it says at once."""
+        """Handle a key, and publish its command at once."""
         text = self.keys.press(key)
         if text is not None:
             self.show(f"{text}\n")
         elif not self.keys.is_moving and not self.is_leased:
-            # The end of a lease is a stop by itself; what others have commanded ends, too.
+            # The end of a lease is itself a stop; this also ends commands of others.
             self.publisher.publish(self.command(Twist()))
         self.is_due.set()
 
     def command(self, twist: Twist) -> Any:
-        """Return a command as the robot takes it."""
+        """Return a command in the message type of the robot."""
         if not self.is_stamped:
             return twist
         stamped = TwistStamped(twist=twist)
@@ -154,7 +154,7 @@ class Teleop(Node):
         return stamped
 
     async def drive(self) -> None:
-        """Publish what keys say, until it is cancelled; then the stop goes out."""
+        """Publish the command of the keys until cancelled; then the stop is sent."""
         while True:
             await self.is_due.wait()
             self.is_due.clear()
@@ -169,7 +169,7 @@ class Teleop(Node):
                         self.is_due.clear()
             except LeaseExpiredError as error:
                 self.keys.move = (0, 0, 0, 0)
-                self.show(f"stopped: {error}; press a key to go on\n")
+                self.show(f"stopped: {error}; press a key to continue\n")
             finally:
                 self.is_leased = False
 
@@ -188,8 +188,8 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
     number = sys.stdin.fileno()
     if not os.isatty(number):
         raise CommandError(
-            "keys are read from a terminal, and stdin is none: start it in a terminal of its own, "
-            "in a launch file with prefix='xterm -e'"
+            "keys are read from a terminal, but stdin is not one: start the program in its "
+            "own terminal, in a launch file with prefix='xterm -e'"
         )
     loop = asyncio.get_running_loop()
     import termios  # not on Windows
@@ -208,7 +208,7 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
             loop.remove_reader(number)
             end()
 
-    tty.setcbreak(number)  # Ctrl-C stays a signal
+    tty.setcbreak(number)  # Ctrl-C remains a signal
     loop.add_reader(number, read)
     try:
         yield
@@ -219,7 +219,7 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
 
 
 def show(text: str) -> None:
-    """Write a text to the terminal, if there still is one."""
+    """Write a text to the terminal, if it still exists."""
     with suppress(OSError):  # the terminal is lost, and the program is about to end
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -230,7 +230,7 @@ async def drive_by_keys() -> None:
     async with Teleop(show) as node, asyncio.TaskGroup() as tasks:
         driving = tasks.create_task(node.drive())
         with terminal(node.press, driving.cancel):
-            show(f"{HELP}\n{node.keys}\n")  # from here on keys count
+            show(f"{HELP}\n{node.keys}\n")  # from here on keys are handled
             await asyncio.wait([driving])
 
 

@@ -30,13 +30,13 @@ class Throttle(AnyTypeNode):
         if kind == "messages":
             rate = self.needed("msgs_per_sec", Parameter.Type.DOUBLE)
             if not rate > 0:
-                raise CommandError(f"msgs_per_sec is {rate}; a number above 0 fits")
+                raise CommandError(f"msgs_per_sec is {rate}; use a number above 0")
             self.period_ns = int(1e9 / rate)
         elif kind == "bytes":
             self.most_bytes = self.needed("bytes_per_sec", Parameter.Type.INTEGER)
             self.window_ns = int(self.needed("window", Parameter.Type.DOUBLE) * 1e9)
         else:
-            raise CommandError(f"Unknown throttle type: {kind!r}; messages and bytes fit")
+            raise CommandError(f"Unknown throttle type: {kind!r}; use messages or bytes")
         wall = self.declare_parameter("use_wall_clock", False).value
         self.clock = Clock(ClockType.SYSTEM_TIME) if wall else self.get_clock()
         self.sent: deque[tuple[int, int]] = deque()

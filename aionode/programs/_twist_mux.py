@@ -63,7 +63,7 @@ class TwistMux(Node):
     those below ``locks`` locks.
 
     Raises:
-        CommandError: A parameter is missing or does not fit.
+        CommandError: A parameter is missing or invalid.
     """
 
     def __init__(self) -> None:
@@ -73,7 +73,7 @@ class TwistMux(Node):
             automatically_declare_parameters_from_overrides=True,
         )
         if not self.has_parameter("use_stamped"):
-            # Humble's twist_mux, 4.3, knows Twist alone; since 4.4 TwistStamped is the default.
+            # Humble's twist_mux, 4.3, only knows Twist; since 4.4 TwistStamped is the default.
             is_stamped = self.context.ros_distro != "humble"
             self.declare_parameter("use_stamped", is_stamped, ParameterDescriptor())
         kind: Any = TwistStamped if self.get_parameter("use_stamped").value else Twist
@@ -105,7 +105,8 @@ class TwistMux(Node):
                     value = float(value)
                 if type(value) is not kind:
                     raise CommandError(
-                        f"parameter '{prefix}.{name}.{part}' is {value!r}; a {kind.__name__} fits"
+                        f"parameter '{prefix}.{name}.{part}' is {value!r}; "
+                        f"its type has to be {kind.__name__}"
                     )
                 values.append(value)
             topic, timeout, priority = values

@@ -100,9 +100,9 @@ class Robot:
         try:
             root = ET.fromstring(text)  # noqa: S314  # entities are refused above
         except ET.ParseError as error:
-            raise ValueError(f"it is no XML: {error}") from None
+            raise ValueError(f"it is not XML: {error}") from None
         if root.tag != "robot":
-            raise ValueError(f"its root is <{root.tag}>; <robot> fits")
+            raise ValueError(f"its root is <{root.tag}>, and should be <robot>")
         links = [named(link) for link in root.findall("link")]
         if not links:
             raise ValueError("it has no links")
@@ -110,7 +110,7 @@ class Robot:
         for element in root.findall("joint"):
             joint = joint_of(element)
             if joint.name in joints:
-                raise ValueError(f"joint {joint.name!r} is there twice")
+                raise ValueError(f"joint {joint.name!r} is defined twice")
             joints[joint.name] = joint
         refuse_what_is_no_tree(links, joints)
         return cls(joints)
@@ -138,7 +138,7 @@ def joint_of(element: ET.Element) -> Joint:
     name = named(element)
     kind = element.get("type", "")
     if kind not in KINDS:
-        raise ValueError(f"joint {name!r} has the type {kind!r}; {', '.join(KINDS)} fit")
+        raise ValueError(f"joint {name!r} has the type {kind!r}; use one of {', '.join(KINDS)}")
     parent, child = (link_of(element, part, name) for part in ("parent", "child"))
     origin = element.find("origin")
     if origin is None:
@@ -198,13 +198,13 @@ def refuse_what_is_no_tree(links: list[str], joints: dict[str, Joint]) -> None:
     for joint in joints.values():
         for link in (joint.parent, joint.child):
             if link not in links:
-                raise ValueError(f"joint {joint.name!r} names link {link!r}, which is not there")
+                raise ValueError(f"joint {joint.name!r} names link {link!r}, which does not exist")
         if joint.child in parents:
             raise ValueError(f"link {joint.child!r} is the child of two joints")
         parents[joint.child] = joint.parent
     roots = [link for link in links if link not in parents]
     if not roots:
-        raise ValueError("its links form a circle, so there is no root")
+        raise ValueError("its links form a loop, so there is no root")
     if len(roots) > 1:
         raise ValueError(f"it has two roots, {roots[0]!r} and {roots[1]!r}")
     for link in links:
@@ -213,7 +213,7 @@ def refuse_what_is_no_tree(links: list[str], joints: dict[str, Joint]) -> None:
             seen.add(link)
             link = parents[link]  # noqa: PLW2901  # on the way to the root
         if link in seen:
-            raise ValueError(f"its links form a circle at {link!r}")
+            raise ValueError(f"its links form a loop at {link!r}")
 
 
 def named(element: ET.Element) -> str:
@@ -236,7 +236,7 @@ def vector(text: str, name: str) -> Vector:
     """Return three numbers."""
     words = text.split()
     if len(words) != 3:
-        raise ValueError(f"joint {name!r}: {text!r} are not three numbers")
+        raise ValueError(f"joint {name!r}: {text!r} is not three numbers")
     x, y, z = (number(word, name) for word in words)
     return x, y, z
 
@@ -248,5 +248,5 @@ def number(text: str, name: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"joint {name!r}: {text!r} is no number")
+        raise ValueError(f"joint {name!r}: {text!r} is not a number")
     return value

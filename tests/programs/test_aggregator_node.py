@@ -280,7 +280,7 @@ async def test_values_of_a_part_are_passed_on(panel: Callable[..., Panel]) -> No
 
 async def test_a_rate_has_to_be_one(start: Start) -> None:
     """The original divides by it."""
-    with pytest.raises(CommandError, match="pub_rate is 0; a number above 0 fits"):
+    with pytest.raises(CommandError, match="pub_rate is 0; use a number above 0"):
         start(Aggregator, pub_rate=0)
 
 

@@ -211,7 +211,7 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
     [
         (UsbCam, {"video_device": "/dev/video77"}, "video_device '/dev/video77' does not exist"),
         (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; yuyv, yuyv2rgb"),
-        (UsbCam, {"framerate": 0.0}, "numbers above 0 fit"),
+        (UsbCam, {"framerate": 0.0}, "use numbers above 0"),
         (V4L2Camera, {"image_size": [640]}, "Invalid image size"),
         (V4L2Camera, {"output_encoding": "mono"}, "output_encoding 'mono'"),
     ],
@@ -232,7 +232,7 @@ async def test_a_file_that_is_no_video_is_said_and_tried_again(
     file.write_bytes(b"no video")
     viewer.look(CameraInfo, "camera_info")
     start(UsbCam, video_device=str(file), pixel_format="rgb8", **SMALL)
-    await until(lambda: "no video that can be read" in capsys.readouterr().err)
+    await until(lambda: "not a readable video" in capsys.readouterr().err)
     file.write_bytes((videos / "plain.mkv").read_bytes())
 
     assert await viewer.pictures(1)

@@ -151,7 +151,7 @@ async def test_what_is_no_description_is_not_used(
         ({"dependent_joints.one": 1.0}, "Invalid dependent_joint name 'one'"),
         ({"dependent_joints.one.speed": 1.0}, "Invalid dependent_joint name 'speed'"),
         ({"dependent_joints.one.factor": 1.0}, "All dependent_joints must at least have a parent"),
-        ({"rate": 0}, "rate is 0; a number above 0 fits"),
+        ({"rate": 0}, "rate is 0; use a number above 0"),
     ],
 )
 async def test_parameters_that_do_not_fit_are_named(

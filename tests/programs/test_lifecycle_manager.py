@@ -166,5 +166,5 @@ async def test_a_node_that_goes_brings_all_down_and_one_that_comes_back_all_up(
 
 async def test_it_needs_the_names_of_nodes(start: Start) -> None:
     """Without them it would manage nothing."""
-    with pytest.raises(CommandError, match="'node_names' is needed"):
+    with pytest.raises(CommandError, match="'node_names' is required"):
         start(Manager)

@@ -128,7 +128,7 @@ async def test_an_image_that_cannot_be_written_is_said_once(
     seen = await viewer.show(Image, "in", wrong, wrong, picture())
 
     assert len(seen) == 1
-    assert capsys.readouterr().err.count("an image is left out: ") == 1
+    assert capsys.readouterr().err.count("an image is skipped: ") == 1
 
 
 async def test_a_rule_may_name_the_topic_or_its_base(
@@ -151,7 +151,7 @@ async def test_a_rule_may_name_the_topic_or_its_base(
 @pytest.mark.parametrize(
     ("name", "value", "text"),
     [
-        ("in_transport", "theora", "in_transport is 'theora', and there is no such transport here"),
+        ("in_transport", "theora", "in_transport is 'theora', which is not available here"),
         ("out.compressed.format", "tiff", "'tiff'; jpeg and png fit"),
     ],
 )

@@ -209,15 +209,15 @@ async def test_a_robot_without_a_description_does_not_start(aionode_context: Con
 @pytest.mark.parametrize(
     ("urdf", "text"),
     [
-        ("<sdf/>", "its root is <sdf>; <robot> fits"),
-        ("<robot>", "it is no XML"),
+        ("<sdf/>", "its root is <sdf>, and should be <robot>"),
+        ("<robot>", "it is not XML"),
         ('<!DOCTYPE r [<!ENTITY a "b">]><robot/>', "entities"),
         (ARM.replace('link="base"', 'link="nowhere"', 1), "names link 'nowhere'"),
-        (ARM.replace('<child link="mount"/>', '<child link="base"/>'), "circle"),
+        (ARM.replace('<child link="mount"/>', '<child link="base"/>'), "loop"),
         (ARM.replace('<link name="base"/>', '<link name="base"/><link name="a"/>'), "two roots"),
         (ARM.replace('axis xyz="0 0 2"', 'axis xyz="0 0 0"'), "axis without length"),
-        (ARM.replace('xyz="0 0 1"', 'xyz="0 0 nan"'), "'nan' is no number"),
-        (ARM.replace('name="slide" type', 'name="lift" type'), "'lift' is there twice"),
+        (ARM.replace('xyz="0 0 1"', 'xyz="0 0 nan"'), "'nan' is not a number"),
+        (ARM.replace('name="slide" type', 'name="lift" type'), "'lift' is defined twice"),
         (ARM.replace('"prismatic"', '"hinge"'), "type 'hinge'"),
     ],
 )

@@ -251,4 +251,4 @@ def test_without_a_terminal_it_says_where_to_start_it() -> None:
     )
 
     assert done.returncode == 1
-    assert "keys are read from a terminal, and stdin is none" in done.stderr
+    assert "keys are read from a terminal, but stdin is not one" in done.stderr

@@ -113,7 +113,7 @@ async def test_a_lazy_relay_listens_only_while_it_is_heard(
 
 async def test_a_relay_does_not_hear_itself(start: Start) -> None:
     """One message would come again without end."""
-    with pytest.raises(CommandError, match="input and output are one topic"):
+    with pytest.raises(CommandError, match="input and output are the same topic"):
         start(Relay, "chatter", "/chatter")
 
 
@@ -122,7 +122,7 @@ async def test_a_program_without_a_topic_says_which_parameter_it_needs(
     start: Start, kind: type[Node]
 ) -> None:
     """It would wait for ever."""
-    with pytest.raises(CommandError, match=r"parameter 'input_topics?' is needed"):
+    with pytest.raises(CommandError, match=r"parameter 'input_topics?' is required"):
         start(kind)
 
 
@@ -169,7 +169,7 @@ async def test_throttle_lets_as_many_bytes_through_as_the_window_says(
 
 async def test_a_throttle_of_an_unknown_kind_is_refused(start: Start) -> None:
     """The original runs on, and does nothing."""
-    with pytest.raises(CommandError, match="Unknown throttle type: 'often'; messages and bytes"):
+    with pytest.raises(CommandError, match="Unknown throttle type: 'often'; use messages or bytes"):
         start(Throttle, input_topic="chatter", throttle_type="often")
 
 
@@ -301,7 +301,7 @@ async def test_demux_publishes_on_the_output_that_is_selected(
 
 async def test_demux_needs_an_output(start: Start) -> None:
     """It would publish nowhere."""
-    with pytest.raises(CommandError, match="parameter 'output_topics' is needed"):
+    with pytest.raises(CommandError, match="parameter 'output_topics' is required"):
         start(Demux)
 
 

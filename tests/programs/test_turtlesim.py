@@ -173,7 +173,7 @@ async def test_a_turtle_can_be_elsewhere_at_once(pond: Pond) -> None:
 
 async def test_nobody_is_sent_to_infinity(pond: Pond) -> None:
     """The caller is told."""
-    with pytest.raises(ServiceError, match="x is inf; a finite number fits"):
+    with pytest.raises(ServiceError, match="x is inf; use a finite number"):
         await pond.call(TeleportAbsolute, "turtle1/teleport_absolute", x=math.inf)
 
 

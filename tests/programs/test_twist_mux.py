@@ -151,7 +151,11 @@ async def test_diagnostics_say_who_is_heard(
     ("name", "value", "text"),
     [
         ("topics.tablet.topic", "tab_vel", "could not load parameter 'topics.tablet.timeout'"),
-        ("topics.joystick.priority", 1.5, "'topics.joystick.priority' is 1.5; a int fits"),
+        (
+            "topics.joystick.priority",
+            1.5,
+            "priority' is 1.5; its type has to be int",
+        ),
     ],
 )
 async def test_parameters_that_do_not_fit_are_named(

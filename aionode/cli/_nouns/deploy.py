@@ -1,4 +1,4 @@
-"""``aionode deploy``: a workspace onto a robot, where systemd runs it."""
+"""``aionode deploy``: installs a workspace on a robot, where systemd runs it."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 @click.command()
 @click.argument("target", metavar="USER@ROBOT")
 @click.argument("workspace", metavar="[FOLDER]", type=FOLDER, default=Path())
-@click.option("--unit", type=FILE, help="The unit of systemd; else the only one in FOLDER.")
-@click.option("--wheel", "wheels", type=FILE, multiple=True, help="A wheel to install besides.")
+@click.option("--unit", type=FILE, help="The systemd unit; by default the only one in FOLDER.")
+@click.option("--wheel", "wheels", type=FILE, multiple=True, help="An additional wheel to install.")
 @click.option("--python", default="python3", metavar="PYTHON", help="The robot's Python.")
 @click.option(
     "--unit-folder",
     default="/etc/systemd/system",
     metavar="FOLDER",
-    help="Where the robot has its units.",
+    help="The folder of the robot's units.",
 )
-@click.option("--ssh-config", type=FILE, help="Options of ssh, in place of ~/.ssh/config.")
-@click.option("--no-follow", is_flag=True, help="Do not print the log of the robot.")
-@click.option("--dry-run", is_flag=True, help="Print what would be done; connect to nothing.")
+@click.option("--ssh-config", type=FILE, help="The ssh configuration, instead of ~/.ssh/config.")
+@click.option("--no-follow", is_flag=True, help="Do not print the robot's log.")
+@click.option("--dry-run", is_flag=True, help="Print what would be done, without connecting.")
 def deploy_command(
     target: str,
     workspace: Path,
@@ -51,7 +51,9 @@ def deploy_command(
     step. The release before stays, and a second run without changes restarts nothing.
     """
     if target.startswith("-"):
-        raise click.UsageError(f"{target!r} is no robot; ssh's options come from --ssh-config FILE")
+        raise click.UsageError(
+            f"{target!r} is not a robot; use --ssh-config FILE for ssh's options"
+        )
     release = release_of(workspace, unit, tuple(wheel.resolve() for wheel in wheels))
     robot = Robot(target, ssh_config, dry_run)
     click.echo(described(release))
@@ -75,7 +77,7 @@ def deploy_command(
 
 
 def described(release: Release) -> str:
-    """Return what is shipped, for a person."""
+    """Return a description of the release for a person."""
     size = sum((release.workspace / file).stat().st_size for file in release.files)
     wheels = [*(package.name for package in release.packages), *(w.name for w in release.wheels)]
     return (

@@ -1,4 +1,4 @@
-"""``aionode graph``: nodes and what they share, as text and as pictures."""
+"""``aionode graph``: nodes and their connections, as text and as pictures."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ __all__ = ["draw", "graph_command"]
 FORMS: Final = {"text": to_text, "dot": to_dot, "mermaid": to_mermaid, "svg": to_svg}
 
 LARGEST: Final = 64 * 2**20
-"""The most bytes of a saved picture that are read."""
+"""The largest saved picture that is read, in bytes."""
 
 
 @click.command("graph")
 @click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
-@click.option("--dot", "form", flag_value="dot", help="Print the language of Graphviz.")
-@click.option("--mermaid", "form", flag_value="mermaid", help="Print the language of Mermaid.")
+@click.option("--dot", "form", flag_value="dot", help="Print in Graphviz's language.")
+@click.option("--mermaid", "form", flag_value="mermaid", help="Print in Mermaid's language.")
 @click.option("--svg", "form", flag_value="svg", help="Print a picture as SVG.")
-@click.option("--all", "everything", is_flag=True, help="Infrastructure and hidden nodes as well.")
-@click.option("--measure", is_flag=True, help="How often something comes, as the nodes count it.")
+@click.option("--all", "everything", is_flag=True, help="Include infrastructure and hidden nodes.")
+@click.option("--measure", is_flag=True, help="Show rates, as counted by the nodes.")
 @click.option(
     "--duration", type=positive, default=1.0, show_default=True, help="Time to measure, in s."
 )
-@click.option("--save", type=click.Path(path_type=Path), help="Save the graph of this moment.")
+@click.option("--save", type=click.Path(path_type=Path), help="Save the current graph.")
 @click.option(
-    "--since", type=click.Path(path_type=Path), help="Mark what is new since a saved one."
+    "--since", type=click.Path(path_type=Path), help="Mark what is new since a saved graph."
 )
 @json_option
 @ros2_options
@@ -97,7 +97,7 @@ async def draw(
     if names and not picture.vertices:
         known = ", ".join(each.name for each in picture_of(node.graph).vertices[:10])
         raise CommandError(
-            f"nothing is called {' or '.join(names)}; "
+            f"nothing is named {' or '.join(names)}; "
             + (f"there are {known}" if known else "there is no node of others")
         )
     if save is not None:
@@ -111,7 +111,7 @@ async def draw(
 async def measured(
     node: Node, duration: float, output: Output
 ) -> dict[tuple[str, str, str], float]:
-    """Return how often each endpoint sends or gets something, as the processes count it."""
+    """Return the rate at which each endpoint sends or receives, as counted by the processes."""
     before = await observe(node)
     with output.waiting("Measuring"):
         await node.get_clock().sleep(duration)
@@ -142,5 +142,5 @@ def saved_picture(path: Path) -> Picture:
     except OSError as error:
         raise CommandError(f"{path}: cannot be read: {error.strerror}") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        problem = f"it is no graph that --save wrote ({brief(str(error))})"
+        problem = f"it is not a graph written by --save ({brief(str(error))})"
         raise CommandError(f"{path}: {problem}") from error

@@ -1,4 +1,4 @@
-"""The calibration of a camera, as camera_info_manager keeps it: files in YAML, by addresses."""
+"""The calibration of a camera, as in camera_info_manager: YAML files, referenced by URLs."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
 __all__ = ["Calibration", "info_of", "text_of"]
 
 USUAL: Final = "file://${ROS_HOME}/camera_info/${NAME}.yaml"
-"""Where a calibration is if nothing else is said."""
+"""The default URL of a calibration."""
 
 MATRICES: Final = {"k": ("camera_matrix", 3), "r": ("rectification_matrix", 3),
                    "p": ("projection_matrix", 4), "d": ("distortion_coefficients", 0)}  # fmt: skip
-"""The matrices of a calibration, by the fields of CameraInfo, and how many columns they have."""
+"""The matrices of a calibration, by the fields of CameraInfo, and their numbers of columns."""
 
 
 def info_of(text: str) -> CameraInfo:
-    """Return a calibration.
+    """Parse a calibration.
 
     Raises:
-        ValueError: The text is none.
+        ValueError: The text is not a calibration.
     """
     try:
         given = yaml.safe_load(text)
@@ -48,15 +48,17 @@ def info_of(text: str) -> CameraInfo:
         for name, numbers in matrices.items():
             setattr(info, name, numbers)
     except (yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError) as error:
-        raise ValueError(f"no calibration: {type(error).__name__}: {error}") from None
+        raise ValueError(f"not a calibration: {type(error).__name__}: {error}") from None
     sizes = [len(info.k), len(info.r), len(info.p)]
     if sizes != [9, 9, 12]:
-        raise ValueError(f"no calibration: its matrices have {sizes} numbers; [9, 9, 12] fit")
+        raise ValueError(
+            f"not a calibration: its matrices have {sizes} numbers, and need [9, 9, 12]"
+        )
     return info
 
 
 def text_of(info: CameraInfo, name: str) -> str:
-    """Return the file of a calibration."""
+    """Return a calibration as the text of a file."""
     given: dict[str, Any] = {
         "image_width": info.width,
         "image_height": info.height,
@@ -73,15 +75,15 @@ def text_of(info: CameraInfo, name: str) -> str:
 
 
 class Calibration:
-    """Reads the calibration of a node's camera, and keeps what `~/set_camera_info` is told.
+    """Reads the calibration of a node's camera, and stores the one sent to `~/set_camera_info`.
 
     Args:
         node: The node.
-        name: The name of the camera, which may be a part of addresses.
-        url: Where the calibration is: ``file:///…`` or ``package://NAME/…``.
+        name: The name of the camera, which URLs may contain.
+        url: The URL of the calibration: ``file:///…`` or ``package://NAME/…``.
 
     Attributes:
-        info: The calibration; zeros where there is none.
+        info: The calibration; zeros if there is none.
     """
 
     def __init__(self, node: Node, name: str, url: str) -> None:
@@ -93,7 +95,7 @@ class Calibration:
         node.create_service(SetCameraInfo, "~/set_camera_info", self.on_set)
 
     def load(self, url: str) -> None:
-        """Read a calibration; the log says what is wrong with it."""
+        """Read a calibration, logging what is wrong with it."""
         self.url = url
         path = self.path()
         if path is None:
@@ -108,7 +110,7 @@ class Calibration:
             self.log.warning(f"Camera calibration file {path} is not used: {error}")
 
     def path(self) -> Path | None:
-        """Return the file of the calibration; None if its address is none."""
+        """Return the file of the calibration; None if its URL is invalid."""
         home = os.environ.get("ROS_HOME") or str(Path.home() / ".ros")
         url = (self.url or USUAL).replace("${NAME}", self.name).replace("${ROS_HOME}", home)
         if url.lower().startswith("file:///"):
@@ -123,18 +125,18 @@ class Calibration:
             return None
 
     def for_size(self, width: int, height: int) -> CameraInfo:
-        """Return the calibration of images of a size; zeros if it is of another one."""
+        """Return the calibration for images of a size; zeros if it is for another size."""
         if (self.info.width, self.info.height) == (width, height):
             return self.info
         return CameraInfo(width=width, height=height)
 
     def on_set(self, request: Any, response: Any) -> Any:
-        """Keep a calibration, in its file as well."""
+        """Store a calibration, in its file as well."""
         self.info = request.camera_info
         path = self.path()
         if path is None:
             response.status_message = (
-                f"Error storing camera calibration: {self.url} is no address of a file"
+                f"Error storing camera calibration: {self.url} is not the URL of a file"
             )
             return response
         try:

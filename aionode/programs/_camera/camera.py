@@ -1,4 +1,4 @@
-"""What the nodes of cameras have in common: pictures of a device or a file become messages."""
+"""The common part of camera nodes: pictures of a device or a file become messages."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ __all__ = ["Camera"]
 
 START_SEC: Final = 0.01
 RETRY_SEC: Final = 1.0
-"""How long after a failure a camera is opened again."""
+"""Delay after a failure before a camera is opened again."""
 
 
 class Camera(Node):
-    """Publishes `image_raw`, `image_raw/compressed` while somebody looks, and `camera_info`.
+    """Publishes `image_raw`, `camera_info`, and `image_raw/compressed` while it has subscriptions.
 
     Attributes:
-        device: The device, or the file of a video, which begins anew at its end.
+        device: The device, or a video file, which is played in a loop.
         pixel_format: One of `FORMATS`.
         size: Width and height.
-        rate: Pictures a second.
+        rate: Pictures per second.
         frame_id: The frame of the camera.
         is_capturing: Whether pictures are taken.
         has_raw: Whether `image_raw` is published.
@@ -45,10 +45,10 @@ class Camera(Node):
         self.offset_ns = 0
 
     def begin(self, calibration: Calibration, qos: QoSProfile) -> None:
-        """Publish from now on.
+        """Start publishing.
 
         Raises:
-            CommandError: There is no camera, or nothing to read it by.
+            CommandError: There is no camera, or no package to read it.
         """
         check_device(self.device)
         self.calibration = calibration
@@ -58,22 +58,22 @@ class Camera(Node):
         self.create_timer(START_SEC, self.capture)
 
     async def capture(self) -> None:
-        """Publish pictures until the node ends; a camera that is pulled out is waited for."""
+        """Publish pictures until the node ends, waiting for a camera that is unplugged."""
         while True:
             try:
                 await self.play()
             except OSError as error:
                 self.get_logger().error(
-                    f"{self.device}: {error}; it is opened again until that succeeds",
+                    f"{self.device}: {error}; retrying until it can be opened",
                     throttle_duration_sec=10.0,
                 )
                 await self.get_clock().sleep(RETRY_SEC)
 
     async def play(self) -> None:
-        """Publish the pictures of a camera, or those of a file once.
+        """Publish the pictures of a camera, or once those of a file.
 
         Raises:
-            OSError: It cannot be opened, or read any more.
+            OSError: It cannot be opened, or no longer be read.
         """
         given = FORMATS[self.pixel_format]
         video = await asyncio.to_thread(Video, self.device, given, self.size, self.rate)
@@ -86,7 +86,7 @@ class Camera(Node):
                 if frame is None and count and not video.is_camera:
                     return
                 if frame is None:
-                    raise OSError("there are no pictures in it")
+                    raise OSError("it contains no pictures")
                 count += 1
                 if self.is_capturing:
                     await self.publish(frame)
@@ -113,7 +113,7 @@ class Camera(Node):
         self.infos.publish(info)
 
     def compressed(self, frame: Frame, image: Image) -> Any:
-        """Return a picture as JPEG: as it came, if it did so."""
+        """Return a picture as JPEG: unchanged if it was one."""
         if frame.jpeg is not None:
             return CompressedImage(header=image.header, format="jpeg", data=frame.jpeg)
         return compressed(image, "jpeg", 95, 3)

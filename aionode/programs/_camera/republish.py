@@ -1,4 +1,4 @@
-"""``image_transport republish``: publishes images in another form, such as compressed ones."""
+"""``image_transport republish``: publishes images in another form, such as compressed."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ INPUTS: Final[dict[str, Any]] = {
     "compressed": CompressedImage,
     "compressedDepth": CompressedImage,
 }
-"""The transports that can be read, and their types."""
+"""The transports that can be read, and their message types."""
 
 OUTPUTS: Final[dict[str, Any]] = {"raw": Image, "compressed": CompressedImage}
-"""Those that can be written."""
+"""The transports that can be written."""
 
 FORMATS: Final = ("jpeg", "png")
 
@@ -35,7 +35,7 @@ FORMAT: Final = "out.compressed.format"
 
 
 def topic_of(node: Node, base: str, transport: str) -> str:
-    """Return the topic of a transport: a rule for it counts before one for the base."""
+    """Return the topic of a transport: a remapping of it precedes one of the base topic."""
     if transport == "raw":
         return node.resolve_topic_name(base)
     own = node.resolve_topic_name(f"{base}/{transport}")
@@ -45,10 +45,10 @@ def topic_of(node: Node, base: str, transport: str) -> str:
 
 
 def compressed(image: Image, format_: str, quality: int, level: int) -> CompressedImage:
-    """Return an image as JPEG or PNG; as in compressed_image_transport, its format says both forms.
+    """Return an image as JPEG or PNG; its format names both encodings, as in ROS.
 
     Raises:
-        ValueError: The image has no colours that the format can hold.
+        ValueError: The format cannot hold the colours of the image.
     """
     encoding = image.encoding
     if format_ == "jpeg" and encoding in ("rgba8", "bgra8"):
@@ -61,7 +61,7 @@ def compressed(image: Image, format_: str, quality: int, level: int) -> Compress
 
 
 def uncompressed(image: CompressedImage) -> Image:
-    """Return an image as it was before it was compressed; ``bgr8`` if that is unknown.
+    """Return an image as it was before compression; ``bgr8`` if that is unknown.
 
     Raises:
         ValueError: Its data cannot be read.
@@ -75,13 +75,13 @@ def uncompressed(image: CompressedImage) -> Image:
 
 
 class Republisher(Node):
-    """Publishes on `out`, in one transport or in all, what it hears on `in` while somebody listens.
+    """Republishes `in` on `out`, in one transport or in all, while `out` has subscriptions.
 
     Args:
         *words: The transport of the input, then that of the output, as in older launch files.
 
     Raises:
-        CommandError: A transport is unknown, or a parameter does not fit.
+        CommandError: A transport is unknown, or a parameter is invalid.
     """
 
     def __init__(self, *words: str) -> None:
@@ -110,18 +110,16 @@ class Republisher(Node):
         }
 
     def chosen(self, name: str, usual: str, fits: Sequence[str]) -> str:
-        """Return the transport that a parameter says."""
+        """Return the transport set by a parameter."""
         transport: str = self.declare_parameter(name, usual).value
         self.get_logger().info(f"The '{name}' parameter is set to: {transport}")
         if transport not in fits:
             known = ", ".join(each for each in fits if each)
-            raise CommandError(
-                f"{name} is {transport!r}, and there is no such transport here; {known} fit"
-            )
+            raise CommandError(f"{name} is {transport!r}, which is not available here; use {known}")
         return transport
 
     def declare_compression(self) -> None:
-        """Declare how images are compressed."""
+        """Declare the parameters of compression."""
         for name, usual, most in ((QUALITY, 95, 100), (LEVEL, 3, 9)):
             limits = IntegerRange(from_value=int(name == QUALITY), to_value=most, step=1)
             self.declare_parameter(name, usual, ParameterDescriptor(integer_range=[limits]))
@@ -130,7 +128,7 @@ class Republisher(Node):
             raise CommandError(f"{FORMAT} is {self.format!r}; {' and '.join(FORMATS)} fit")
 
     def on_matched(self, _info: object) -> None:
-        """Listen while somebody listens."""
+        """Subscribe while there are subscriptions."""
         is_wanted = any(each.get_subscription_count() for each in self.outputs.values())
         if is_wanted and self.input is None:
             self.input = self.create_subscription(
@@ -141,7 +139,7 @@ class Republisher(Node):
             self.input = None
 
     def on_image(self, given: Image | CompressedImage) -> None:
-        """Publish an image in the forms that somebody listens to; in a thread."""
+        """Publish an image in each form that has subscriptions; in a thread."""
         listened = {
             transport: each
             for transport, each in self.outputs.items()
@@ -155,7 +153,7 @@ class Republisher(Node):
                 image = self.converted(given, transport, quality, level)
             except ValueError as error:
                 if str(error) != self.warned:
-                    self.get_logger().error(f"an image is left out: {error}")
+                    self.get_logger().error(f"an image is skipped: {error}")
                 self.warned = str(error)
                 continue
             if not output.destroyed:

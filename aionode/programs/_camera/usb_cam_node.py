@@ -20,7 +20,7 @@ from aionode.programs._camera.video import FORMATS
 __all__ = ["UsbCam", "main"]
 
 CONTROLS: Final = {"brightness": 50, "contrast": -1, "saturation": -1, "sharpness": -1, "gain": -1}
-"""Controls of the camera and their values; below 0 they are left alone."""
+"""Controls of the camera and their values; those below 0 are not changed."""
 
 SWITCHES: Final[dict[str, Any]] = {
     "auto_white_balance": True, "white_balance": 4000, "autoexposure": True, "exposure": 100,
@@ -32,7 +32,7 @@ class UsbCam(Camera):
     """Publishes the pictures of `video_device`.
 
     Raises:
-        CommandError: A parameter does not fit, or there is no such camera.
+        CommandError: A parameter is invalid, or there is no such camera.
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class UsbCam(Camera):
             raise CommandError(f"pixel_format is {self.pixel_format!r}; {', '.join(FORMATS)} fit")
         if min(self.size) < 1 or not 0 < self.rate < math.inf:
             raise CommandError(
-                f"the camera is to have {self.size} pixels at {self.rate} Hz; numbers above 0 fit"
+                f"the camera should have {self.size} pixels at {self.rate} Hz; use numbers above 0"
             )
         self.has_raw = self.pixel_format != "mjpeg"
         self.begin(Calibration(self, name, url), QoSProfile(depth=100))
@@ -70,14 +70,14 @@ class UsbCam(Camera):
         await super().capture()
 
     def on_set_capture(self, request: Any, response: Any) -> Any:
-        """Begin or end to take pictures."""
+        """Start or stop taking pictures."""
         self.is_capturing = request.data
         response.success = True
         response.message = "Start Capturing" if request.data else "Stop Capturing"
         return response
 
     def controls(self) -> dict[str, int]:
-        """Return what is set at the camera, by the names of its driver."""
+        """Return the controls to set at the camera, by the names of its driver."""
         value = {name: self.get_parameter(name).value for name in (*CONTROLS, *SWITCHES)}
         found = {name: value[name] for name in CONTROLS if value[name] >= 0}
         found["white_balance_temperature_auto"] = int(value["auto_white_balance"])
@@ -92,7 +92,7 @@ class UsbCam(Camera):
         return found
 
     def control(self) -> None:
-        """Set the controls of the camera by v4l2-ctl, as the original does; in a thread."""
+        """Set the controls of the camera with v4l2-ctl, like the original; in a thread."""
         if not Path(self.device).resolve().is_relative_to("/dev"):
             return
         program = shutil.which("v4l2-ctl")

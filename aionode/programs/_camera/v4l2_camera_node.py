@@ -17,7 +17,7 @@ from aionode.qos import qos_profile_sensor_data
 __all__ = ["V4L2Camera", "main"]
 
 PIXELS: Final = {"YUYV": "yuyv", "UYVY": "uyvy", "MJPG": "mjpeg", "RGB3": "rgb8", "GREY": "mono8"}
-"""The names of pixel formats, by their codes of four letters."""
+"""The names of pixel formats, by their four-letter codes."""
 
 ENCODINGS: Final = {"rgb8": "2rgb", "yuv422": "", "yuv422_yuy2": "", "mono8": ""}
 
@@ -26,7 +26,7 @@ class V4L2Camera(Camera):
     """Publishes the pictures of `video_device`.
 
     Raises:
-        CommandError: A parameter does not fit, or there is no such camera.
+        CommandError: A parameter is invalid, or there is no such camera.
     """
 
     def __init__(self) -> None:
@@ -60,7 +60,7 @@ class V4L2Camera(Camera):
 
     @staticmethod
     def format_of(pixels: str, encoding: str) -> str:
-        """Return how pixels come, and how they are published."""
+        """Return how pixels are read, and how they are published."""
         if encoding == "mono8":
             return "mono8"
         if encoding == "rgb8":
@@ -69,7 +69,7 @@ class V4L2Camera(Camera):
 
     @staticmethod
     def name_of(device: str) -> str:
-        """Return the name of a camera, which its driver says."""
+        """Return the name of a camera, as reported by its driver."""
         file = Path("/sys/class/video4linux", Path(device).resolve().name, "name")
         return file.read_text(encoding="utf-8").strip() if file.is_file() else Path(device).stem
 

@@ -1,4 +1,4 @@
-"""Cameras of Linux and files of videos, read by PyAV."""
+"""Linux cameras and video files, read by PyAV."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ["FORMATS", "Frame", "Video", "check_device"]
 
 
 class Format(NamedTuple):
-    """How pixels come, and how they are published.
+    """How pixels are read, and how they are published.
 
     Attributes:
-        v4l2: What a camera is asked for, as ffmpeg calls it.
+        v4l2: The format requested from a camera, by ffmpeg's name.
         av: To what ffmpeg converts them.
         encoding: What ROS calls that.
     """
@@ -57,7 +57,7 @@ class Frame(NamedTuple):
 
 
 def check_device(path: str) -> None:
-    """Refuse a camera that is not there, or that could not be read.
+    """Refuse a camera that does not exist or cannot be read.
 
     Raises:
         CommandError: There is none, or PyAV is not installed.
@@ -66,7 +66,7 @@ def check_device(path: str) -> None:
         there = sorted(str(each) for each in Path("/dev").glob("video*"))
         raise CommandError(
             f"video_device {path!r} does not exist; cameras here: {', '.join(there) or 'none'}; "
-            "the path of a video file fits as well"
+            "the path of a video file works as well"
         )
     try:
         import av  # noqa: F401  # only whether it is there
@@ -77,13 +77,13 @@ def check_device(path: str) -> None:
 
 
 class Video:
-    """A camera or a file, opened. Its methods block, and belong into a thread.
+    """An open camera or file. Its methods block, so they belong in a thread.
 
     Args:
         path: The device, or the file of a video.
-        format_: How pixels come, and how they are wanted.
+        format_: How pixels are read, and how they are published.
         size: Width and height; files are scaled to it.
-        rate: How many pictures a second a camera is asked for.
+        rate: The number of pictures per second requested from a camera.
 
     Raises:
         OSError: It cannot be opened.
@@ -108,11 +108,11 @@ class Video:
             self.container = opening(path, **given)
             self.stream = self.container.streams.video[0]
         except self.failures as error:
-            raise OSError(f"no video that can be read ({error})") from None
+            raise OSError(f"not a readable video ({error})") from None
         self.is_jpeg = self.stream.codec_context.name == "mjpeg"
         self.packets = self.container.demux(self.stream)
         self.waiting: list[tuple[Any, bytes | None]] = []
-        self.reading = threading.Lock()  # FFmpeg crashes if it is closed while it reads
+        self.reading = threading.Lock()  # FFmpeg crashes if it is closed while it is reading
         self.is_closing = False
 
     def read(self) -> Frame | None:
@@ -129,7 +129,7 @@ class Video:
                 self.close()
 
     def next_frame(self) -> Frame | None:
-        """Return the next picture; as `read`."""
+        """Return the next picture, like `read`."""
         while not self.waiting:
             try:
                 packet = next(self.packets, None)
@@ -151,7 +151,7 @@ class Video:
         return Frame(pixels, self.format.encoding, data)
 
     def close(self) -> None:
-        """Close it, from any thread: at once, or as soon as no other one reads it any more."""
+        """Close it, from any thread: at once, or as soon as the last reader has finished."""
         self.is_closing = True
         if self.reading.acquire(blocking=False):
             try:

@@ -1,1 +1,1 @@
-"""Diagnostics: the states of many parts of a robot, put together."""
+"""Diagnostics: the states of many parts of a robot, aggregated."""

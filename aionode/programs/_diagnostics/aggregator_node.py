@@ -1,4 +1,4 @@
-"""``diagnostic_aggregator aggregator_node``: puts diagnostics together, as parameters say."""
+"""``diagnostic_aggregator aggregator_node``: aggregates diagnostics, as set by parameters."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ __all__ = ["Aggregator", "main"]
 ERROR: Final = 2
 
 MAX_WARNINGS: Final = 1000
-"""How many warnings are remembered, so as not to be repeated."""
+"""Number of warnings that are remembered so that they are not repeated."""
 
 
 class Aggregator(Node):
-    """Publishes on `/diagnostics_agg` what analyzers make of `/diagnostics`.
+    """Publishes on `/diagnostics_agg` the reports of analyzers on `/diagnostics`.
 
     Raises:
-        CommandError: A parameter does not fit.
+        CommandError: A parameter is invalid.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Aggregator(Node):
         }
         rate = given.get("pub_rate", 1.0)
         if not isinstance(rate, int | float) or not 0 < rate < math.inf:
-            raise CommandError(f"pub_rate is {rate!r}; a number above 0 fits")
+            raise CommandError(f"pub_rate is {rate!r}; use a number above 0")
         self.is_critical = bool(given.get("critical", False))
         path = str(given.get("path", ""))
         base = f"/{path}" if path else ""
@@ -54,7 +54,7 @@ class Aggregator(Node):
         return self.get_clock().now().nanoseconds / 1e9
 
     def on_diagnostics(self, msg: DiagnosticArray) -> None:
-        """Have the analyzers take what is reported."""
+        """Pass reported states to the analyzers."""
         if msg.header.stamp.sec == 0:
             names = ", ".join(status.name for status in msg.status)
             text = f"No timestamp set for diagnostic message. Message names: {names}"
@@ -71,14 +71,14 @@ class Aggregator(Node):
             taker.analyze(status)
 
     def publish(self) -> None:
-        """Publish what there is, and the worst level of all."""
+        """Publish all states, and the worst level."""
         msg = DiagnosticArray(status=[*self.group.report(), *self.other.report()])
         msg.header.stamp = self.get_clock().now().to_msg()
         self.publisher.publish(msg)
         levels = [level_of(status) for status in msg.status]
         worst = max(levels, default=ERROR)
         if worst > ERROR and min(levels) <= ERROR:
-            worst = ERROR  # stale only if all is
+            worst = ERROR  # stale only if all are
         self.last_level = worst
         self.top.publish(DiagnosticStatus(name="toplevel_state", level=bytes([worst])))
 

@@ -1,4 +1,4 @@
-"""The analyzers of diagnostic_aggregator: each takes some parts of a robot, and reports on them."""
+"""The analyzers of diagnostic_aggregator: each reports on the parts of a robot it accepts."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ NAMES: Final = ("OK", "Warning", "Error", "Stale")
 
 TIMEOUT_SEC: Final = 5.0
 MAX_ITEMS: Final = 10_000
-"""How many parts an analyzer keeps: names come from whoever publishes."""
+"""Number of parts that an analyzer keeps, since any publisher may invent names."""
 
 PACKAGE: Final = "diagnostic_aggregator/"
 
 
 def level_of(status: DiagnosticStatus) -> int:
-    """Return the level of a part as a number; what is none of the four is an error."""
+    """Return the level of a part as a number; anything but the four levels is an error."""
     level = status.level[0]
     return level if level <= STALE else ERROR
 
@@ -34,12 +34,12 @@ def report_of(name: str, level: int, message: str = "", **others: Any) -> Diagno
 
 
 def output_name(name: str) -> str:
-    """Return the name of a part without slashes, which would make groups."""
+    """Return the name of a part without slashes, which would create groups."""
     return name.replace("/", " ")
 
 
 def without_prefix(name: str, prefix: str) -> str:
-    """Return a path whose last part does not begin with a prefix, nor with what follows it."""
+    """Remove a prefix, and the separator after it, from the last part of a path."""
     if not prefix:
         return name
     start, slash, last = name.rpartition("/")
@@ -47,7 +47,7 @@ def without_prefix(name: str, prefix: str) -> str:
 
 
 class Analyzer(Protocol):
-    """What takes parts of a robot, and reports on them.
+    """Accepts parts of a robot, and reports on them.
 
     Attributes:
         path: The name of its own state.
@@ -58,18 +58,18 @@ class Analyzer(Protocol):
     name: str
 
     def match(self, name: str) -> bool:
-        """Return whether it takes a part."""
+        """Return whether it accepts a part."""
 
     def analyze(self, status: DiagnosticStatus) -> None:
-        """Take the state of a part."""
+        """Process the state of a part."""
 
     def report(self) -> list[DiagnosticStatus]:
-        """Return the state of all parts, under its path, and its own."""
+        """Return its own state, and those of all its parts, under its path."""
 
 
 @dataclass
 class Item:
-    """The newest state of a part, and when it came, in seconds."""
+    """The newest state of a part, and its arrival time in seconds."""
 
     status: DiagnosticStatus
     at: float
@@ -77,15 +77,15 @@ class Item:
 
 @dataclass
 class Items:
-    """The parts of an analyzer, and the state that follows from theirs.
+    """The parts of an analyzer, and the state derived from theirs.
 
     Attributes:
         path: The name of its own state.
         name: The same for users.
         now: Returns the time, in seconds.
-        timeout: After which time without news a part is stale; 0 for never.
-        expected: How many parts there have to be; below 0, any number.
-        is_forgetful: Whether parts are forgotten once they are stale.
+        timeout: The time without news after which a part is stale; 0 for never.
+        expected: The required number of parts; below 0, any number.
+        is_forgetful: Whether stale parts are forgotten.
     """
 
     path: str
@@ -97,7 +97,7 @@ class Items:
     items: dict[str, Item] = field(default_factory=dict)
 
     def analyze(self, status: DiagnosticStatus) -> None:
-        """Take the state of a part."""
+        """Process the state of a part."""
         if status.name in self.items or len(self.items) < MAX_ITEMS:
             self.items[status.name] = Item(status, self.now())
 
@@ -143,15 +143,15 @@ class Items:
 
 
 class Generic(Items):
-    """``GenericAnalyzer``: takes parts by their names.
+    """``GenericAnalyzer``: accepts parts by their names.
 
     Args:
-        path: The path of the group that it is in.
-        parameters: What it is configured by.
+        path: The path of its group.
+        parameters: Its configuration.
         now: Returns the time, in seconds.
 
     Raises:
-        CommandError: It would take nothing, or a parameter does not fit.
+        CommandError: It would accept nothing, or a parameter is invalid.
     """
 
     def __init__(self, path: str, parameters: Mapping[str, Any], now: Callable[[], float]) -> None:
@@ -162,7 +162,7 @@ class Generic(Items):
             if isinstance(value, list | tuple) and all(isinstance(each, str) for each in value):
                 return list(value)
             raise CommandError(
-                f"'{name}' of {parameters['path']} is {value!r}; a list of texts fits"
+                f"'{name}' of {parameters['path']} is {value!r}; use a list of strings"
             )
 
         def given(name: str, usual: Any) -> Any:
@@ -171,7 +171,8 @@ class Generic(Items):
                 value = float(value)
             if type(value) is not type(usual):
                 raise CommandError(
-                    f"'{name}' of {parameters['path']} is {value!r}; a {type(usual).__name__} fits"
+                    f"'{name}' of {parameters['path']} is {value!r}; "
+                    f"its type has to be {type(usual).__name__}"
                 )
             return value
 
@@ -192,17 +193,17 @@ class Generic(Items):
         try:
             self.patterns = [re.compile(each) for each in texts("regex")]
         except re.error as error:
-            raise CommandError(f"'regex' of {parameters['path']} is none: {error}") from None
+            raise CommandError(f"'regex' of {parameters['path']} is invalid: {error}") from None
         if not (self.starts or self.parts or self.names or self.patterns):
             raise CommandError(
                 f"GenericAnalyzer '{parameters['path']}' was not initialized with any way of "
-                "checking diagnostics; startswith, contains, expected, name and regex fit"
+                "checking diagnostics; use startswith, contains, expected, name or regex"
             )
         for name in texts("expected"):
             self.items[name] = Item(report_of(name, STALE, "Missing"), now())
 
     def match(self, name: str) -> bool:
-        """Return whether it takes a part."""
+        """Return whether it accepts a part."""
         return (
             name in self.names
             or name.startswith(self.starts)
@@ -211,7 +212,7 @@ class Generic(Items):
         )
 
     def report(self) -> list[DiagnosticStatus]:
-        """Return the own state, and those of all parts, without the prefixes of their names."""
+        """Return its own state, and those of all parts, without the prefixes of their names."""
         own, *parts = super().report()
         for prefix in self.prefixes:
             for part in parts:
@@ -220,10 +221,10 @@ class Generic(Items):
 
 
 class Discard(Generic):
-    """``DiscardAnalyzer``: takes parts, and reports nothing."""
+    """``DiscardAnalyzer``: accepts parts, and reports nothing."""
 
     def analyze(self, status: DiagnosticStatus) -> None:
-        """Forget a part."""
+        """Ignore a part."""
 
     def report(self) -> list[DiagnosticStatus]:
         """Return nothing."""
@@ -231,16 +232,16 @@ class Discard(Generic):
 
 
 class Ignore:
-    """``IgnoreAnalyzer``: takes nothing."""
+    """``IgnoreAnalyzer``: accepts nothing."""
 
     path = name = ""
 
     def match(self, name: str) -> bool:  # noqa: ARG002  # none
-        """Take no part."""
+        """Accept no part."""
         return False
 
     def analyze(self, status: DiagnosticStatus) -> None:
-        """Take no part."""
+        """Accept no part."""
 
     def report(self) -> list[DiagnosticStatus]:
         """Return nothing."""
@@ -248,11 +249,11 @@ class Ignore:
 
 
 class Other(Items):
-    """Reports on the parts that no analyzer takes.
+    """Reports on the parts that no analyzer accepts.
 
     Args:
         path: The path of all.
-        is_error: Whether there may be none.
+        is_error: Whether their existence is an error.
         now: Returns the time, in seconds.
     """
 
@@ -261,7 +262,7 @@ class Other(Items):
         self.is_error = is_error
 
     def report(self) -> list[DiagnosticStatus]:
-        """Return the state of all, if there are any."""
+        """Return the states of all such parts, if there are any."""
         own, *parts = super().report()
         if not parts:
             return []
@@ -272,13 +273,13 @@ class Other(Items):
 
 @dataclass
 class Group:
-    """``AnalyzerGroup``: has a part analyzed by all analyzers that take it.
+    """``AnalyzerGroup``: passes a part to all its analyzers that accept it.
 
     Attributes:
         path: The name of its own state; none if it is empty.
         name: The same for users.
         analyzers: Those in it.
-        failed: Those that could not be made, by their names, with the reason.
+        failed: Those that could not be created, by name, with the reason.
     """
 
     path: str
@@ -287,17 +288,17 @@ class Group:
     failed: dict[str, str] = field(default_factory=dict)
 
     def match(self, name: str) -> bool:
-        """Return whether one of them takes a part."""
+        """Return whether one of them accepts a part."""
         return any(analyzer.match(name) for analyzer in self.analyzers)
 
     def analyze(self, status: DiagnosticStatus) -> None:
-        """Have all take the state of a part that take the part."""
+        """Pass the state of a part to all that accept the part."""
         for analyzer in self.analyzers:
             if analyzer.match(status.name):
                 analyzer.analyze(status)
 
     def report(self) -> list[DiagnosticStatus]:
-        """Return the states of all, and the own one last."""
+        """Return the states of all, followed by its own."""
         if not self.analyzers:
             name = self.path if self.path not in ("", "/") else "/AnalyzerGroup"
             return [report_of(name, ERROR, "No analyzers")]
@@ -327,18 +328,18 @@ KINDS: Final[dict[str, Any]] = {"GenericAnalyzer": Generic, "DiscardAnalyzer": D
 
 @dataclass
 class Analyzers:
-    """Makes analyzers of parameters.
+    """Creates analyzers from parameters.
 
     Attributes:
         now: Returns the time, in seconds.
-        tell: Called with what is wrong.
+        tell: Called with each problem.
     """
 
     now: Callable[[], float]
     tell: Callable[[str], object]
 
     def group(self, path: str, parameters: Mapping[str, Any]) -> Group:
-        """Return a group of the analyzers that parameters name."""
+        """Return a group of the analyzers named by parameters."""
         group = Group(path, path)
         owners = {}
         for name in parameters:
@@ -366,7 +367,7 @@ class Analyzers:
         """Return an analyzer.
 
         Raises:
-            CommandError: There is no such kind, or its parameters do not fit.
+            CommandError: There is no such kind, or its parameters are invalid.
         """
         name = kind.removeprefix(PACKAGE)
         if name == "AnalyzerGroup":
@@ -375,8 +376,8 @@ class Analyzers:
             return Ignore()
         if name not in KINDS:
             raise CommandError(
-                f"Unable to find Analyzer class {kind}; AnalyzerGroup, IgnoreAnalyzer and "
-                f"{' and '.join(KINDS)} fit, and plugins in C++ cannot be had here"
+                f"Unable to find Analyzer class {kind}; use AnalyzerGroup, IgnoreAnalyzer, "
+                f"{' or '.join(KINDS)}; C++ plugins are not supported here"
             )
         made: Analyzer = KINDS[name](path, parameters, self.now)
         return made

@@ -29,7 +29,7 @@ class JoyNode(Node):
         devices: Returns the devices of this machine.
 
     Raises:
-        CommandError: A parameter does not fit.
+        CommandError: A parameter is invalid.
     """
 
     joystick: Joystick | None = None

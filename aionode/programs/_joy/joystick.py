@@ -62,7 +62,7 @@ def input_devices() -> Iterator[Device]:
         ) from None
     paths = evdev.list_devices()
     for path in sorted(paths, key=lambda path: (len(path), path)):
-        with suppress(OSError):  # it has just gone, or belongs to somebody else
+        with suppress(OSError):  # it has just gone, or belongs to another user
             yield evdev.InputDevice(path)
 
 

@@ -83,7 +83,7 @@ class TeleopTwistJoy(Node):
         else:
             self.command = None
             if not (self.is_leased or self.has_stopped):
-                # The end of a lease is a stop by itself; what others have commanded ends, too.
+                # The end of a lease is itself a stop; this also ends commands of others.
                 self.publisher.publish(self.message(Twist()))
                 self.has_stopped = True
         self.is_due.set()
@@ -135,8 +135,8 @@ class TeleopTwistJoy(Node):
             except LeaseExpiredError:
                 self.command = None
                 self.get_logger().warning(
-                    f"stopped: nothing came from the joystick for {TTL_SEC:g} s; it is pulled out, "
-                    "or its autorepeat_rate is too low"
+                    f"stopped: the joystick sent nothing for {TTL_SEC:g} s; it is "
+                    "unplugged, or its autorepeat_rate is too low"
                 )
             finally:
                 self.is_leased = False

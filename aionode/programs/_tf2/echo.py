@@ -1,4 +1,4 @@
-"""``tf2_ros tf2_echo``: prints a transform again and again."""
+"""``tf2_ros tf2_echo``: prints a transform repeatedly."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Default echo rate is 1 if echo_rate is not given.
 """
 
 WAITING_SEC: Final = 1.0
-"""How often it says that it waits, at most."""
+"""Shortest interval at which it prints that it is waiting."""
 
 
 def angles_of(matrix: Sequence[Sequence[float]]) -> tuple[float, float, float]:
@@ -39,7 +39,7 @@ def angles_of(matrix: Sequence[Sequence[float]]) -> tuple[float, float, float]:
 
 
 def text_of(transform: TransformStamped) -> str:
-    """Return a transform as it is printed."""
+    """Return a transform as printed."""
 
     def row(numbers: Sequence[float]) -> str:
         return ", ".join(f"{number:.3f}" for number in numbers)
@@ -66,7 +66,7 @@ def text_of(transform: TransformStamped) -> str:
 
 
 class Echo(Node):
-    """Shows the transform that expresses in one frame what is given in another one.
+    """Shows the transform that expresses in one frame what is given in another.
 
     Args:
         frames: The frame to express things in, and the frame that they are in.
@@ -112,11 +112,11 @@ def show(text: str) -> None:
 
 
 def main() -> None:
-    """Print the transform that the arguments name until Ctrl-C.
+    """Print the transform named by the arguments until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1, 2 or 3: the arguments are too few or too many, or the rate is no
-            number.
+        SystemExit: With status 1, 2 or 3: there are too few or too many arguments, or the rate is
+            not a number.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) not in (2, 3):

@@ -1,4 +1,4 @@
-"""``tf2_ros tf2_monitor``: prints how late transforms come, every ten seconds."""
+"""``tf2_ros tf2_monitor``: prints the delays of transforms every ten seconds."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ __all__ = ["Monitor", "main"]
 
 TICK_SEC: Final = 0.5
 TICKS: Final = 21
-"""After so many looks the results are printed."""
+"""The number of checks after which the results are printed."""
 
 KEPT: Final = 1000
-"""How many delays are remembered, of each frame and of all."""
+"""Number of delays that are remembered, for each frame and in total."""
 
 MAX_FRAMES: Final = 10_000
 LOWPASS: Final = 0.01
@@ -64,7 +64,7 @@ class Monitor(Node):
         return self.get_clock().now().nanoseconds / 1e9
 
     def on_transforms(self, msg: TFMessage) -> None:
-        """Note how late transforms are."""
+        """Record the delays of transforms."""
         now = self.now()
         delays = []
         for each in msg.transforms:
@@ -76,7 +76,7 @@ class Monitor(Node):
         self.arrivals.append((now, sum(delays) / max(1, len(delays))))
 
     def is_ready(self) -> bool:
-        """Return whether there is a transform between the frames; if not, the log says so."""
+        """Return whether there is a transform between the frames; if not, log that."""
         if self.has_begun:
             return True
         if self.frames is not None:
@@ -96,7 +96,7 @@ class Monitor(Node):
         return True
 
     def tick(self) -> None:
-        """Look, and show the results every ten seconds."""
+        """Check, and show the results every ten seconds."""
         if not self.is_ready():
             return
         if self.frames is not None:
@@ -114,7 +114,7 @@ class Monitor(Node):
             self.show(self.results())
 
     def results(self) -> str:
-        """Return what was seen, as it is printed."""
+        """Return the results as printed."""
         lines = ["", "", "", "RESULTS: for all Frames"]
         if self.frames is not None:
             lines[3:] = [

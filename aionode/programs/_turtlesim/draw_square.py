@@ -1,4 +1,4 @@
-"""``turtlesim draw_square``: has the first turtle draw squares."""
+"""``turtlesim draw_square``: makes the first turtle draw squares."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STILL: Final = 0.0001
 
 
 class DrawSquare(Node):
-    """Resets the turtles, and moves `turtle1` ahead and around in turn."""
+    """Resets the turtles, and alternately moves `turtle1` ahead and turns it."""
 
     def __init__(self) -> None:
         super().__init__("draw_square")
@@ -33,11 +33,11 @@ class DrawSquare(Node):
         self.create_timer(STEP_SEC, self.go_on)
 
     def on_pose(self, pose: Pose) -> None:
-        """Note where the turtle is."""
+        """Record the place of the turtle."""
         self.pose = pose
 
     async def go_on(self) -> None:
-        """Reset the turtles, then command the first one, as soon as it is known where it is."""
+        """Reset the turtles, then command the first one, as soon as its place is known."""
         if not self.is_reset:
             await self.reset.wait_for_service()
             await self.reset.call(Empty.Request())
@@ -47,7 +47,7 @@ class DrawSquare(Node):
             self.publisher.publish(Twist(linear=Vector3(x=forward), angular=Vector3(z=turning)))
 
     def squares(self) -> Generator[tuple[float, float], None, None]:
-        """Yield one command after the other."""
+        """Yield the commands one after another."""
         while True:
             assert self.pose is not None  # noqa: S101  # the first is asked for when it is there
             x = self.pose.x + math.cos(self.pose.theta) * SIDE
@@ -59,7 +59,7 @@ class DrawSquare(Node):
     def until_at(
         self, goal: Pose, forward: float, turning: float
     ) -> Generator[tuple[float, float], None, None]:
-        """Yield a command until the turtle is at a place, and stops until it stands."""
+        """Yield a command until the turtle has reached a place, and stops until it stands still."""
         log = self.get_logger()
         log.info(f"New goal [{goal.x:f} {goal.y:f}, {goal.theta:f}]")
         while not self.is_at(goal):
@@ -70,7 +70,7 @@ class DrawSquare(Node):
         log.info("Reached goal")
 
     def is_at(self, goal: Pose) -> bool:
-        """Return whether the turtle is at a place, and looks as there."""
+        """Return whether the turtle is at a place, and faces the same direction."""
         pose = self.pose
         return (
             pose is not None
@@ -80,7 +80,7 @@ class DrawSquare(Node):
         )
 
     def is_moving(self) -> bool:
-        """Return whether the turtle has not stopped yet."""
+        """Return whether the turtle is still moving."""
         pose = self.pose
         return pose is not None and (
             pose.angular_velocity >= STILL or pose.linear_velocity >= STILL

@@ -1,4 +1,4 @@
-"""``turtlesim mimic``: has one turtle move as another one."""
+"""``turtlesim mimic``: makes one turtle move like another."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Mimic", "main"]
 
 
 class Mimic(Node):
-    """Publishes on `output/cmd_vel` the speeds of `input/pose`."""
+    """Publishes the speeds of `input/pose` on `output/cmd_vel`."""
 
     def __init__(self) -> None:
         super().__init__("turtle_mimic")
@@ -20,7 +20,7 @@ class Mimic(Node):
         self.create_subscription(Pose, "input/pose", self.on_pose, TOPIC_QOS)
 
     def on_pose(self, pose: Pose) -> None:
-        """Command the speeds of a turtle."""
+        """Publish the speeds of a turtle as a command."""
         linear, angular = Vector3(x=pose.linear_velocity), Vector3(z=pose.angular_velocity)
         self.publisher.publish(Twist(linear=linear, angular=angular))
 

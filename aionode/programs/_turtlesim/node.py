@@ -37,17 +37,17 @@ BACKGROUND: Final = {"background_r": ("Red", 0x45), "background_g": ("Green", 0x
 
 STEP_SEC: Final = 0.016
 COMMAND_NS: Final = 1_000_000_000
-"""For how long a command stands."""
+"""How long a command is valid."""
 
 EDGE: Final = (SIZE - 1) / METER
 """Width and height of the window, in units."""
 
 NEAR: Final = 0.02
-"""At which distance from its angle a rotation has ended, in radians."""
+"""Tolerance of the final angle of a rotation, in radians."""
 
 PICTURE_SEC: Final = 0.1
 STILL_PICTURES: Final = 10
-"""A picture that does not change is published each time so many others could have been."""
+"""An unchanged picture is published once for this many that could have been published."""
 
 MAX_TURTLES: Final = 100
 
@@ -60,24 +60,24 @@ def normalized(angle: float) -> float:
 
 
 def single(number: float) -> float:
-    """Return a number as a float32 holds it."""
+    """Return a number rounded to float32."""
     value: float = struct.unpack("f", struct.pack("f", number))[0]
     return value
 
 
 def refuse_unreal(**numbers: float) -> None:
-    """Refuse numbers that are none.
+    """Refuse numbers that are not finite.
 
     Raises:
         ValueError: One is infinite or NaN.
     """
     for name, number in numbers.items():
         if not math.isfinite(number):
-            raise ValueError(f"{name} is {number}; a finite number fits")
+            raise ValueError(f"{name} is {number}; use a finite number")
 
 
 def answer_to(goal: RotateAbsolute.Goal) -> GoalResponse:
-    """Reject a goal whose angle is no number."""
+    """Reject a goal whose angle is not a number."""
     return GoalResponse.ACCEPT if math.isfinite(goal.theta) else GoalResponse.REJECT
 
 
@@ -88,7 +88,7 @@ class Rotation:
     Attributes:
         handle: The goal.
         start: The angle of the turtle when it began.
-        ended: Whether it was reached, as soon as that is known.
+        ended: Whether it was reached, once that is known.
         result: How far the turtle has turned.
     """
 
@@ -103,10 +103,10 @@ class Turtle:
 
     Args:
         node: The node that it belongs to.
-        name: Its name, before those of its topics.
-        picture: What it draws on.
+        name: Its name, which prefixes those of its topics.
+        picture: The picture that it draws on.
         x: Where it is, in units from the left.
-        y: As above, from the bottom.
+        y: Where it is, in units from the bottom.
         theta: Its direction, in radians.
     """
 
@@ -150,11 +150,13 @@ class Turtle:
             part.destroy()
 
     def on_command(self, twist: Twist) -> None:
-        """Move so for a second."""
+        """Move with these speeds for a second."""
         log = self.node.get_logger()
         numbers = twist.linear.x, twist.linear.y, twist.angular.z
         if not all(map(math.isfinite, numbers)):
-            log.warning(f"{self.pose.topic_name}: stopped, as a command is no number: {numbers}")
+            log.warning(
+                f"{self.pose.topic_name}: stopped, because a command is not finite: {numbers}"
+            )
             numbers = 0.0, 0.0, 0.0
         self.commanded_ns = self.node.get_clock().now().nanoseconds
         self.forward, sideways, self.turning = numbers
@@ -169,12 +171,12 @@ class Turtle:
         if request.off:
             self.pen = None
         else:
-            # A pen without a width has that of the original's new one.
+            # A pen without a width gets the width of the original's new pen.
             self.pen = Pen((request.r, request.g, request.b), request.width or 1)
         return response
 
     def teleport_relative(self, request: Any, response: Any) -> Any:
-        """Turn, and go on, at once."""
+        """Turn and move, at once."""
         refuse_unreal(linear=request.linear, angular=request.angular)
         self.theta += request.angular
         self.jump(
@@ -184,14 +186,14 @@ class Turtle:
         return response
 
     def teleport_absolute(self, request: Any, response: Any) -> Any:
-        """Be elsewhere, at once."""
+        """Jump to a place, at once."""
         refuse_unreal(x=request.x, y=request.y, theta=request.theta)
         self.theta = request.theta
         self.jump(request.x, max(0.0, EDGE - request.y))
         return response
 
     def jump(self, x: float, down: float) -> None:
-        """Be elsewhere, at once; the pen draws a line."""
+        """Jump to a place, drawing a line with the pen."""
         before = self.x, self.down
         self.x, self.down = x, down
         self.draw(before)
@@ -233,11 +235,11 @@ class Turtle:
         self.rotation = None
 
     def stop(self) -> None:
-        """Stand."""
+        """Stop moving."""
         self.forward = self.sideways = self.turning = 0.0
 
     def follow(self, rotation: Rotation, now_ns: int) -> None:
-        """Turn on towards the angle of a goal."""
+        """Continue to turn towards the angle of a goal."""
         remaining = normalized(normalized(rotation.handle.request.theta) - self.theta)
         rotation.result.delta = normalized(rotation.start - self.theta)
         rotation.handle.publish_feedback(RotateAbsolute.Feedback(remaining=remaining))
@@ -249,7 +251,7 @@ class Turtle:
             self.commanded_ns = now_ns
 
     def update(self) -> bool:
-        """Move on by a step; return whether the picture is another one now."""
+        """Move by one step; return whether the picture has changed."""
         start = self.theta
         is_changed, self.has_jumped = self.has_jumped, False
         now_ns = self.node.get_clock().now().nanoseconds
@@ -274,13 +276,13 @@ class Turtle:
         return is_changed or self.theta != start
 
     def draw(self, before: tuple[float, float]) -> None:
-        """Draw a line from where it was."""
+        """Draw a line from its last place."""
         if self.pen is not None:
             places = (*before, self.x, self.down)
             self.picture.draw(self.pen, *(place * METER for place in places))
 
     def publish(self) -> None:
-        """Publish where it is, and the color under it."""
+        """Publish its place, and the color under it."""
         self.pose.publish(
             Pose(
                 x=self.x,
@@ -331,21 +333,22 @@ class TurtleSim(Node):
         return red, green, blue
 
     def spawn(self, name: str, x: float, y: float, theta: float) -> str:
-        """Add a turtle, and return its name; none if there is one of that name.
+        """Add a turtle, and return its name; an empty name if there is already one with that name.
 
         Raises:
-            ValueError: It is nowhere, its name is no name of topics, or there are too many.
+            ValueError: Its place is not finite, its name is invalid in topics, or there are too
+                many.
         """
         refuse_unreal(x=x, y=y, theta=theta)
         if len(self.turtles) >= MAX_TURTLES:
-            raise ValueError(f"there are {MAX_TURTLES} turtles already; kill one")
+            raise ValueError(f"there are already {MAX_TURTLES} turtles; kill one")
         while not name:
             self.number += 1
             if f"turtle{self.number}" not in self.turtles:
                 name = f"turtle{self.number}"
         if name in self.turtles:
             return ""
-        self.resolve_topic_name(f"{name}/pose")  # refuses what is no name
+        self.resolve_topic_name(f"{name}/pose")  # refuses invalid names
         x, y, theta = single(x), single(y), single(theta)
         self.turtles[name] = Turtle(self, name, self.picture, x, y, theta)
         self.is_changed = True
@@ -378,7 +381,7 @@ class TurtleSim(Node):
         return response
 
     def on_reset(self, _request: Any, response: Any) -> Any:
-        """Begin anew."""
+        """Start over."""
         self.get_logger().info("Resetting turtlesim.")
         while self.turtles:
             self.turtles.popitem()[1].destroy()
@@ -393,7 +396,7 @@ class TurtleSim(Node):
             self.is_changed |= turtle.update()
 
     def show(self) -> None:
-        """Publish the picture, if somebody looks and it has changed, or has not for a second."""
+        """Publish the picture for subscriptions if it has changed, and otherwise once a second."""
         self.ticks += 1
         background = self.colors()
         is_old = self.ticks >= self.shown_at + STILL_PICTURES

@@ -20,27 +20,27 @@ SIZE: Final = 500
 """Width and height of the window, in pixels."""
 
 METER: Final = 45.0
-"""How many pixels a unit is: as high as a turtle."""
+"""The number of pixels in a unit: the height of a turtle."""
 
 SHELLS: Final = (
     (0x4E, 0x9A, 0x06), (0xC4, 0x7D, 0x2A), (0x8F, 0x59, 0x02), (0xCC, 0x44, 0x44),
     (0x75, 0x50, 0x7B), (0x2E, 0x8B, 0x8B), (0xD1, 0x6B, 0x9A), (0x9C, 0x9A, 0x2F),
 )  # fmt: skip
-"""The colors of shells, of which each turtle has one."""
+"""The colors of shells, one for each turtle."""
 
 SKIN: Final = (0xA8, 0xD0, 0x8D)
 
 LIMBS: Final = ((16.0, 0.0, 6.0), (9.0, 12.0, 4.5), (9.0, -12.0, 4.5), (-10.0, 11.0, 4.0),
                 (-10.0, -11.0, 4.0), (-16.5, 0.0, 2.0))  # fmt: skip
-"""Head, legs and tail of a turtle that looks along x: centers and radii."""
+"""Head, legs and tail of a turtle that faces along x: centers and radii."""
 
 REACH: Final = 24
-"""A turtle fits into a square of twice so many pixels."""
+"""Half the side of the square around a turtle, in pixels."""
 
 
 @dataclass(frozen=True)
 class Pen:
-    """What a turtle draws with.
+    """The pen of a turtle.
 
     Attributes:
         color: Red, green and blue.
@@ -92,8 +92,8 @@ class Picture:
         """Return the picture with turtles on it.
 
         Args:
-            background: The color where nothing is.
-            turtles: Where each is, its direction in radians, and the number of its shell.
+            background: The color of the empty window.
+            turtles: The place of each, its direction in radians, and the number of its shell.
         """
         pixels = np.empty_like(self.lines)
         pixels[:] = background
@@ -122,9 +122,10 @@ def within(least: float, greatest: float) -> slice:
 
 
 def png(pixels: npt.NDArray[np.uint8]) -> bytes:
-    """Return pixels in red, green and blue as a file in the format PNG."""
+    """Return red, green and blue pixels as a PNG file."""
     height, width = pixels.shape[:2]
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each begins with the number of a filter
+    # each line begins with the number of a filter
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)
     rows[:, 1:] = pixels.reshape(height, -1)
     parts = (
         (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),

@@ -1,4 +1,4 @@
-"""``turtlesim turtle_teleop_key``: moves the first turtle by keys."""
+"""``turtlesim turtle_teleop_key``: moves the first turtle with keys."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Use G|B|V|C|D|E|R|T keys to rotate to absolute orientations. 'F' to cancel a rot
 """
 
 ARROWS: Final[dict[str, tuple[int, int]]] = {"A": (1, 0), "B": (-1, 0), "C": (0, -1), "D": (0, 1)}
-"""How the last letters of what arrow keys send move the turtle: ahead, and around."""
+"""The last letters that arrow keys send, and how they move the turtle: ahead, and around."""
 
 ANGLES: Final = {"g": 0.0, "t": 0.7854, "r": 1.5708, "e": 2.3562, "d": 3.1416, "c": -2.3562,
                  "v": -1.5708, "b": -0.7854}  # fmt: skip
 
 
 class TeleopTurtle(Node):
-    """Publishes on `turtle1/cmd_vel` what arrow keys say, once: turtles stop after a second."""
+    """Publishes each arrow key's command on `turtle1/cmd_vel` once: turtles stop after a second."""
 
     def __init__(self) -> None:
         super().__init__("teleop_turtle")
@@ -43,7 +43,7 @@ class TeleopTurtle(Node):
         self.is_ended = asyncio.Event()
 
     def press(self, key: str) -> None:
-        """Take a key."""
+        """Handle a key."""
         if key in ARROWS:
             ahead, around = ARROWS[key]
             linear = Vector3(x=ahead * self.get_parameter("scale_linear").value)
@@ -65,7 +65,7 @@ class TeleopTurtle(Node):
         return answer.result() if answer.result().accepted else None
 
     def note(self, answer: asyncio.Future[Any]) -> None:
-        """Say why a turtle does not turn."""
+        """Print why a turtle does not turn."""
         error = None if answer.cancelled() else answer.exception()
         if isinstance(error, AionodeError):
             self.get_logger().warning(str(error))
@@ -75,7 +75,7 @@ async def drive_by_keys() -> None:
     """Drive until 'q' or Ctrl-C, or until the terminal is lost."""
     async with TeleopTurtle() as node:
         with terminal(node.press, node.is_ended.set):
-            show(HELP)  # from here on keys count
+            show(HELP)  # from here on keys are handled
             await node.is_ended.wait()
 
 

@@ -20,7 +20,7 @@ function camera(robot, topics, root) {
   let end = null, isBusy = false;
 
   async function show(message) {
-    if (message === null || isBusy) return; // the newest picture, not all of them
+    if (message === null || isBusy) return; // only the newest picture is shown
     isBusy = true;
     try {
       const shown = message.format === undefined ? picture({ ...message, data: bytesOf(message.data) }) : await compressed(message);
@@ -50,7 +50,7 @@ function camera(robot, topics, root) {
 }
 
 function compressed({ data, format }) {
-  if (format.includes("compressedDepth")) throw new Error("compressedDepth is shown over HTTP only");
+  if (format.includes("compressedDepth")) throw new Error("compressedDepth is only available over HTTP");
   const kind = /png/.test(format) ? "image/png" : "image/jpeg";
   return createImageBitmap(new Blob([bytesOf(data)], { type: kind }));
 }

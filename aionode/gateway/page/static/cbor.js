@@ -8,7 +8,7 @@ const TYPED_ARRAYS = {
   85: Float32Array, 86: Float64Array,
 };
 
-/** Return the value that the bytes of an ArrayBuffer stand for. */
+/** Decode the value in the bytes of an ArrayBuffer. */
 export function decode(buffer) {
   const view = new DataView(buffer);
   let at = 0;
@@ -22,7 +22,7 @@ export function decode(buffer) {
       case 25: return view.getUint16(start);
       case 26: return view.getUint32(start);
       case 27: return small(view.getBigUint64(start));
-      default: throw new Error(`CBOR: items of unknown length (${info}) are not read`);
+      default: throw new Error(`CBOR: items of indefinite length (${info}) are not supported`);
     }
   }
 
@@ -41,7 +41,7 @@ export function decode(buffer) {
       case 25: at += 2; return half(view.getUint16(start));
       case 26: at += 4; return view.getFloat32(start);
       case 27: at += 8; return view.getFloat64(start);
-      default: throw new Error(`CBOR: the simple value ${info} is unknown`);
+      default: throw new Error(`CBOR: unknown simple value ${info}`);
     }
   }
 
@@ -77,6 +77,6 @@ function half(bits) {
 
 function tagged(tag, value) {
   const TypedArray = TYPED_ARRAYS[tag];
-  // A typed array has to begin at a multiple of its element's size, so the bytes are copied.
+  // A typed array has to begin at a multiple of its element size, so the bytes are copied.
   return TypedArray ? new TypedArray(value.slice().buffer) : value;
 }

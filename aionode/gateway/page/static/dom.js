@@ -1,4 +1,4 @@
-// Small helpers for elements. What the robot says becomes text, never markup.
+// Small helpers for elements. Texts of the robot become text, never markup.
 
 /** Return a new element with these properties and children. */
 export function element(tag, properties = {}, ...children) {
@@ -7,7 +7,7 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
-/** Give a select these values; keep what is chosen, if it is still there. */
+/** Fill a select with these values; keep the selected one, if it still exists. */
 export function fill(select, values, empty) {
   const shown = [...select.options].map((option) => option.value).join("\n");
   if (shown === ["", ...values].join("\n")) return;
@@ -27,7 +27,7 @@ export function another(view) {
   return made;
 }
 
-/** Say something above the panels, for a while. */
+/** Show a notice above the panels for a while. */
 export function notice(text) {
   const place = document.getElementById("notice");
   place.textContent = text;
@@ -36,7 +36,7 @@ export function notice(text) {
   notice.timer = setTimeout(() => { place.hidden = true; }, 8000);
 }
 
-/** Yield the path and value of each plain value in a message; long arrays are cut. */
+/** Yield the path and value of each plain value in a message; long arrays are truncated. */
 export function* leaves(value, path = "") {
   const isArray = Array.isArray(value) || ArrayBuffer.isView(value);
   if (isArray && value.length > 16) {

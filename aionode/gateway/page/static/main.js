@@ -1,4 +1,4 @@
-// The page of a robot: connects with the gateway that has served it, and fills its panels.
+// The page of a robot: connects to the gateway that served it, and fills its panels.
 
 import { cameras } from "./camera.js";
 import { notice } from "./dom.js";

@@ -5,7 +5,7 @@ import { element, fill, notice } from "./dom.js";
 const LEVELS = { 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL" };
 const MOST_LINES = 500;
 const LIST_MS = 5000;
-const AT_ONCE = 8; // parameters that are asked for
+const AT_ONCE = 8; // parameters requested at a time
 
 export function log(robot) {
   const root = document.getElementById("log");
@@ -75,7 +75,7 @@ export function parameters(robot) {
         input.className = "taken";
       } catch (error) {
         input.className = "refused";
-        const hint = error instanceof SyntaxError ? "write a value in JSON, texts in quotes" : error.message;
+        const hint = error instanceof SyntaxError ? "write the value as JSON, with quotes around text" : error.message;
         notice(`${name}: ${hint}`);
       }
     };
@@ -133,7 +133,7 @@ export function services(robot) {
   setInterval(list, LIST_MS);
 }
 
-/** Return an example of a type: what the user fills in. */
+/** Return an example of a type for the user to fill in. */
 function template(typedefs, typedef) {
   if (!typedef) return {};
   return Object.fromEntries(typedef.fieldnames.map((name, index) => {

@@ -1,12 +1,12 @@
-// The pixels of a sensor_msgs/Image as screens show them: the rules are those of pictures over HTTP.
+// The pixels of a sensor_msgs/Image for a screen, by the same rules as pictures over HTTP.
 
-// Colours: bytes of a channel, channels of a pixel, and the places of red, green and blue in it.
+// Colours: bytes per channel, channels per pixel, and the positions of red, green and blue.
 const COLOURS = {
   rgb8: [1, 3, 0, 1, 2], bgr8: [1, 3, 2, 1, 0], rgba8: [1, 4, 0, 1, 2], bgra8: [1, 4, 2, 1, 0],
   rgb16: [2, 3, 0, 1, 2], bgr16: [2, 3, 2, 1, 0], rgba16: [2, 4, 0, 1, 2], bgra16: [2, 4, 2, 1, 0],
   mono8: [1, 1, 0, 0, 0], "8UC1": [1, 1, 0, 0, 0], "8UC3": [1, 3, 2, 1, 0], "8UC4": [1, 4, 2, 1, 0],
 };
-// Numbers that are scaled by their range: bytes, and what reads one.
+// Numbers that are scaled by their range: bytes per number, and a function that reads one.
 const NUMBERS = {
   mono16: [2, "getUint16"], "16UC1": [2, "getUint16"], "16SC1": [2, "getInt16"], "8SC1": [1, "getInt8"],
   "32SC1": [4, "getInt32"], "32FC1": [4, "getFloat32"], "64FC1": [8, "getFloat64"],
@@ -28,7 +28,7 @@ export function picture(message) {
   return shown;
 }
 
-// Returns what writes the red, green and blue of a pixel.
+// Returns a function that writes the red, green and blue of a pixel.
 function painter(message, pixels) {
   const { encoding, step, is_bigendian, data } = message;
   if (COLOURS[encoding]) {
@@ -52,10 +52,10 @@ function painter(message, pixels) {
     return mosaic(message, bayer[1], valueAt, pixels);
   }
   if (YUV[encoding]) return pairs(message, ...YUV[encoding], pixels);
-  throw new Error(`the encoding ${encoding} is not shown`);
+  throw new Error(`images with the encoding ${encoding} cannot be shown`);
 }
 
-// Returns what tells a number as 0 to 255 of the range of all; what is no number is dark.
+// Returns a function that maps a number to 0 to 255 within the range of all; NaN is dark.
 function scaled({ width, height, step, is_bigendian, data }, bytes, get) {
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
   const numberAt = (row, column) => view[get](row * step + column * bytes, !is_bigendian);

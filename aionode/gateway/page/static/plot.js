@@ -17,7 +17,7 @@ export class Plot {
     requestAnimationFrame(draw);
   }
 
-  /** Begin a line, and return its colour. */
+  /** Start a line, and return its colour. */
   add(name) {
     const used = new Set([...this.lines.values()].map((line) => line.colour));
     const colour = COLOURS.find((each) => !used.has(each)) ?? COLOURS[0];

@@ -1,4 +1,4 @@
-// The connection with the gateway, in the protocol of rosbridge.
+// The connection to the gateway, over the rosbridge protocol.
 
 import { decode } from "./cbor.js";
 
@@ -8,9 +8,9 @@ const CHECK_MS = 2000;
 const SILENT_MS = 6000;
 
 /**
- * Topics and services of a robot. It connects again by itself, with the same subscriptions.
+ * Topics and services of a robot. It reconnects automatically, with the same subscriptions.
  *
- * Events: "state" when the connection opens or closes, "status" with what the gateway refuses.
+ * Events: "state" when the connection opens or closes, "status" when the gateway refuses something.
  */
 export class Robot extends EventTarget {
   constructor(url) {
@@ -59,7 +59,7 @@ export class Robot extends EventTarget {
     this.tell("state", { refused: !wasOpen, reason: event.reason });
   }
 
-  /** Return why the gateway refuses: a browser does not tell that of a WebSocket, but of a POST. */
+  /** Return why the gateway refuses: a browser reveals that for a POST, but not for a WebSocket. */
   async whyRefused() {
     const url = new URL("healthz", this.url);
     url.protocol = url.protocol.replace("ws", "http");
@@ -68,20 +68,20 @@ export class Robot extends EventTarget {
       const answer = await fetch(url, { method: "POST", headers });
       const { error } = await answer.json().catch(() => ({}));
       if (answer.status !== 405) return error ?? `refused: ${answer.status} ${answer.statusText}`;
-      return "The gateway answers, and its WebSocket does not: a proxy has to pass on Upgrade and Connection.";
+      return "The gateway answers, but its WebSocket does not: a proxy has to pass on the headers Upgrade and Connection.";
     } catch (error) {
       return `The gateway cannot be reached: ${error.message}`;
     }
   }
 
-  /** Ask for the time, and give the connection up if nothing has arrived for long. */
+  /** Request the time, and close the connection if nothing has arrived for too long. */
   async check() {
     if (!this.isOpen) return;
     if (performance.now() - this.heardMs > SILENT_MS) {
       const socket = this.socket;
-      this.socket = null; // its end may take minutes, and is of no interest any more
+      this.socket = null; // closing it may take minutes, and does not matter any more
       socket.close();
-      this.onClose({ reason: `nothing has arrived for ${SILENT_MS / 1000} s` });
+      this.onClose({ reason: `nothing was received for ${SILENT_MS / 1000} s` });
       return;
     }
     const startMs = performance.now();
@@ -124,7 +124,7 @@ export class Robot extends EventTarget {
     if (this.isOpen && this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(frame));
   }
 
-  /** How many bytes wait for the network: commands behind many of them would come too late. */
+  /** The number of bytes waiting for the network: commands behind many would arrive too late. */
   get waitingBytes() {
     return this.isOpen ? this.socket.bufferedAmount : 0;
   }
@@ -181,7 +181,7 @@ export class Robot extends EventTarget {
 
   // Services
 
-  /** Return a promise of the response; it fails with what the gateway says. */
+  /** Return a promise of the response; it fails with the gateway's error. */
   call(service, args = {}, timeout = 5) {
     if (!this.isOpen) return Promise.reject(new Error("not connected"));
     const id = `call_service:${service}:${this.nextId++}`;

@@ -1,4 +1,4 @@
-// Drives while the pad or a key is held. Letting go, hiding the page or losing the connection stops.
+// Drives while the pad or a key is held. Releasing it, hiding the page or losing the connection stops.
 
 import { element, notice } from "./dom.js";
 
@@ -42,7 +42,7 @@ export class Teleop {
     addEventListener("pagehide", () => this.disarm());
     document.addEventListener("visibilitychange", () => document.hidden && this.disarm());
     robot.addEventListener("state", () => this.disarm());
-    // Refused commands do nothing: whoever holds the pad should see that, and let it go.
+    // Refused commands have no effect: the user who holds the pad should see that, and let go.
     robot.addEventListener("status", ({ detail }) => detail.id === ID && this.release());
     topics.addEventListener("change", () => this.list());
   }
@@ -74,13 +74,13 @@ export class Teleop {
     this.armed.checked = false;
   }
 
-  /** Stop, whether or not the pad is held, and drive no more until "drive" is ticked again. */
+  /** Stop, whether or not the pad is held, and do not drive until "drive" is ticked again. */
   stop() {
     if (this.pad.classList.contains("armed")) this.publish([0, 0]);
     this.disarm();
   }
 
-  // What is held
+  // Input
 
   grab(event) {
     if (!this.armed.checked || event.button !== 0) return;
@@ -131,7 +131,7 @@ export class Teleop {
     this.draw();
   }
 
-  // What is sent
+  // Output
 
   send() {
     if (this.robot.waitingBytes > MOST_WAITING_BYTES) {
@@ -147,7 +147,7 @@ export class Teleop {
       linear: { x: forward * Number(this.speed.value), y: 0, z: 0 },
       angular: { x: 0, y: 0, z: left * Number(this.turn.value) },
     };
-    // The gateway puts the time of the robot into a header without a stamp.
+    // The gateway stamps a header without a stamp with the robot's time.
     const isStamped = this.type.endsWith("Stamped");
     const message = isStamped ? { header: { frame_id: "base_link" }, twist } : twist;
     this.robot.publish(this.name, message, ID);

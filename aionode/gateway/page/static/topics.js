@@ -5,9 +5,9 @@ import { Plot } from "./plot.js";
 
 const LIST_MS = 3000;
 const RATE_MS = 1000;
-const WINDOW = 3; // seconds over which a rate is the mean
+const WINDOW = 3; // seconds over which rates are averaged
 const MOST_ROWS = 200;
-// Topics whose messages are large are measured only while their message is shown.
+// Topics with large messages are measured only while their message is shown.
 const LARGE = /\/(Image|CompressedImage|PointCloud2?|LaserScan|OccupancyGrid|MarkerArray|DisparityImage)$/;
 
 export class Topics extends EventTarget {
@@ -63,7 +63,7 @@ export class Topics extends EventTarget {
     this.dispatchEvent(new CustomEvent("choose", { detail: name }));
   }
 
-  /** Measure the topics that are on the page, and no others: a subscription costs the robot work. */
+  /** Measure only the topics that are visible: each subscription costs the robot work. */
   measure(shown) {
     const isOn = this.measuring.checked && !document.hidden;
     for (const [name, rate] of this.rates) {
@@ -99,7 +99,7 @@ export class Topics extends EventTarget {
   }
 }
 
-/** The newest message of the topic that is chosen; a click on a number plots it. */
+/** The newest message of the selected topic; clicking a number plots it. */
 export class MessageView {
   constructor(robot, topics) {
     this.robot = robot;

@@ -17,15 +17,15 @@ __all__ = ["BridgeRequester", "BridgeServer"]
 
 
 class BridgeServer(BridgeDeclaration, ZenohServer):
-    """A server as the clients behind bridges see it.
+    """A server as seen by the clients behind bridges.
 
-    DDS has no errors: a client of a handler that fails gets no answer.
+    DDS has no errors: if a handler fails, the client gets no answer.
     """
 
     def _receive(self, query: zenoh.Query) -> None:
         extra = query.attachment
         if query.payload is None or sample_info_of(extra) is not None:
-            # No request, or one of a context of aionode, which comes on rmw_zenoh's key too.
+            # Not a request, or one from an aionode context, which also arrives on rmw_zenoh's key.
             self.answer(query, sample_info_of(extra) or SampleInfo(UNKNOWN_GID, 0, 0), None, 0)
             return
         request = None if extra is None else parse_request_id(extra.to_bytes())
@@ -44,9 +44,9 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
 
 
 class BridgeRequester(BridgeDeclaration, ZenohRequester):
-    """A client as the servers behind bridges see it."""
+    """A client as seen by the servers behind bridges."""
 
-    # A bridge's queryable is not complete. Those of other contexts leave this request out.
+    # A bridge's queryable is not complete. Those of other contexts ignore this request.
     target: ClassVar[zenoh.QueryTarget] = zenoh.QueryTarget.ALL
 
     @property
@@ -57,4 +57,4 @@ class BridgeRequester(BridgeDeclaration, ZenohRequester):
         return ""
 
     def tell_cancelled(self, sequence: int) -> None:
-        """Do nothing: DDS servers cannot be told."""
+        """Do nothing: DDS servers cannot be notified."""
