@@ -50,6 +50,7 @@ NOUNS = {
     "tf": "Show and publish transforms between frames.",
     "top": "Show what all processes of a robot do.",
     "topic": "List, print, publish and measure topics.",
+    "trace": "Record what all processes do, callback by callback.",
     "why": "Show what led to the latest message of a topic.",
 }
 """One line of help per noun; the noun's module holds its command, e.g. ``topic_command``."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 from functools import cache
-from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import msgspec
 
@@ -36,8 +35,10 @@ LARGEST_REPORT: Final = 16 * 2**20
 MOST_TOLD: Final = 200
 """How many entries a context tells at most when it is asked for one and what led to it."""
 
-MOST_RUNS: Final = 2000
+MOST_AT_ONCE: Final = 1000
 """How many runs, and how many entries, a context tells at once when it is asked for all."""
+
+T = TypeVar("T")
 
 Key = tuple[Kind, bytes, int]
 """What identifies something that was sent: its kind, gid and sequence number."""
@@ -49,12 +50,12 @@ class CauseQuestion(msgspec.Struct, array_like=True):
     Attributes:
         name: The latest thing sent by this name: of a topic, service, action, node or goal.
         keys: The entries with these keys.
-        runs_from: All runs and entries from this number of a run on; None for none.
+        since: All runs and entries from these numbers on; None for none.
     """
 
     name: str = ""
     keys: list[Key] = []
-    runs_from: int | None = None
+    since: tuple[int, int] | None = None
 
 
 class RunReport(msgspec.Struct, array_like=True):
@@ -123,8 +124,9 @@ class CauseReport(msgspec.Struct):
         now_ns: When this was told, by that clock.
         is_kept: Whether it keeps causes at all.
         sent: What was sent, the oldest first.
-        runs: Runs, the oldest first.
-        next_run: The number of the next run.
+        runs: Runs that have ended, the first to end first.
+        begin: The numbers of the first run and the first entry that were still kept.
+        next: The numbers of the next ones.
     """
 
     participant: str
@@ -136,7 +138,8 @@ class CauseReport(msgspec.Struct):
     is_kept: bool
     sent: list[SentReport] = []
     runs: list[RunReport] = []
-    next_run: int = 0
+    begin: tuple[int, int] = (0, 0)
+    next: tuple[int, int] = (0, 0)
 
 
 @cache
@@ -157,8 +160,8 @@ def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> C
     )  # fmt: skip
     if log is None:
         return report
-    if question.runs_from is not None:
-        add_runs(report, log, question.runs_from)
+    if question.since is not None:
+        add_all(report, log, question.since)
         return report
     entries = log.everything()
     by_key = {key_of(sent): sent for sent in entries}
@@ -169,18 +172,21 @@ def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> C
     return report
 
 
-def add_runs(report: CauseReport, log: CauseLog, first: int) -> None:
-    """Add the runs from a number on that are still kept, and what was sent since then."""
-    runs, count = list(log.runs), log.counted
-    oldest = count - len(runs)
-    begin = min(max(first, oldest), count)
-    chosen = runs[begin - oldest :][:MOST_RUNS]
-    report.next_run = begin + len(chosen)
-    report.runs = [run_report(run) for run in chosen]
-    if chosen:
-        since = chosen[0].began_ns
-        recent = (sent for sent in reversed(log.sent) if sent.at_ns >= since)
-        report.sent = [reported(sent) for sent in islice(recent, MOST_RUNS)][::-1]
+def add_all(report: CauseReport, log: CauseLog, since: tuple[int, int]) -> None:
+    """Add all runs and entries from some numbers on that are still kept, up to a number of each."""
+    first_run, runs = newer(list(log.runs), log.runs_counted, since[0])
+    first_sent, sent = newer(list(log.sent), log.sent_counted, since[1])
+    report.runs = [run_report(run) for run in runs]
+    report.sent = [reported(each) for each in sent]
+    report.begin = first_run, first_sent
+    report.next = first_run + len(runs), first_sent + len(sent)
+
+
+def newer(kept: list[T], count: int, since: int) -> tuple[int, list[T]]:
+    """Return those of the kept items that have this number or a higher one, and the first one's."""
+    oldest = count - len(kept)
+    begin = min(max(since, oldest), count)
+    return begin, kept[begin - oldest :][:MOST_AT_ONCE]
 
 
 def key_of(sent: Sent) -> Key:

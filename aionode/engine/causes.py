@@ -95,6 +95,7 @@ class Run:
         began_ns: When the callback was called.
         ended_ns: When the callback had ended; 0 before.
         is_call: Whether it is the call of a callback.
+        log: Where it is kept once it has ended; None for what was awaited.
         shared: What tasks that it has started took, each with its task, and the cancellation of a
             goal, with None.
     """
@@ -106,6 +107,7 @@ class Run:
         "gid",
         "is_call",
         "kind",
+        "log",
         "party",
         "sequence",
         "shared",
@@ -122,7 +124,15 @@ class Run:
         self.began_ns = began_ns
         self.ended_ns = 0
         self.is_call = False
+        self.log: CauseLog | None = None
         self.shared: list[tuple[Run, weakref.ref[asyncio.Task[Any]] | None]] = []
+
+    def end(self, now_ns: int) -> None:
+        """Note that the callback has ended."""
+        if not self.ended_ns and self.log is not None:
+            self.ended_ns = now_ns
+            self.log.runs.append(self)
+            self.log.runs_counted += 1
 
     def share(self, run: Run, task: asyncio.Task[Any] | None) -> None:
         """Add a cause for what this run and its tasks send: once `task` has ended, or now."""
@@ -217,10 +227,8 @@ def take(run: Run) -> None:
 
 def note_end(now_ns: int) -> None:
     """Note that the callback for which the current task acts has ended."""
-    for run in CAUSES.get():
-        if not run.ended_ns:
-            run.ended_ns = now_ns
-        return  # the callback's own is the first
+    for run in CAUSES.get()[:1]:  # the callback's own is the first
+        run.end(now_ns)
 
 
 class CauseLog:
@@ -230,14 +238,16 @@ class CauseLog:
 
     Attributes:
         sent: What was sent last, the oldest first.
-        runs: The callbacks that were called last, the oldest first.
-        counted: How many runs were ever added.
+        sent_counted: How many things were ever sent.
+        runs: The callbacks that ended last, the first to end first.
+        runs_counted: How many have ever ended.
     """
 
     def __init__(self) -> None:
         self.sent: deque[Sent] = deque(maxlen=MOST_KEPT)
         self.runs: deque[Run] = deque(maxlen=MOST_KEPT)
-        self.counted = 0
+        self.sent_counted = 0
+        self.runs_counted = 0
         self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MOST_SENDERS)
 
     def note(
@@ -246,14 +256,14 @@ class CauseLog:
         """Add something that is being sent."""
         sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), acting_for(), goal)
         self.sent.append(sent)
+        self.sent_counted += 1
         self._last.put((kind, party.gid, party.name), sent)
 
     def begin(self, party: Party, kind: Kind, gid: bytes, sequence: int, entered_ns: int) -> Run:
         """Add a run, which the current task acts for from now on; return it."""
         run = Run(party, kind, gid, sequence, entered_ns, perf_ns())
         run.is_call = True
-        self.counted += 1
-        self.runs.append(run)
+        run.log = self
         CAUSES.set((run,))
         return run
 

@@ -18,6 +18,7 @@ from aionode.engine.cause_reports import (
     decoded,
     encoded,
 )
+from aionode.engine.causes import Kind
 from aionode.graph import EndpointInfo, EndpointKind
 from aionode.names import is_hidden
 from aionode.observe._snapshot import ANSWER_S
@@ -25,7 +26,6 @@ from aionode.observe._snapshot import ANSWER_S
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
-    from aionode.engine.causes import Kind
     from aionode.node import Node
 
 __all__ = ["Cause", "Caused", "Why", "why"]

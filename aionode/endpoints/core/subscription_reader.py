@@ -419,7 +419,7 @@ class CausalReader(SubscriptionReader):
                 rest = handle(entered_ns, arrived.item)
             finally:
                 if rest is None:
-                    run.ended_ns = perf_ns()
+                    run.end(perf_ns())
             return rest
 
         return handle_arrived

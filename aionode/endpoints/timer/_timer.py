@@ -96,7 +96,7 @@ class TimerCauses:
                 rest = call(expected_ns, now_ns)
             finally:
                 if rest is None:
-                    run.ended_ns = perf_ns()
+                    run.end(perf_ns())
             return rest
 
         return make_call

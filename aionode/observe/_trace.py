@@ -1,0 +1,292 @@
+"""The callbacks of all processes on one axis of time, for Perfetto and Chrome."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode.clock import S_TO_NS, perf_ns
+from aionode.engine.cause_reports import (
+    CauseQuestion,
+    CauseReport,
+    RunReport,
+    SentReport,
+    answer,
+    clock_id,
+    decoded,
+    encoded,
+)
+from aionode.names import is_hidden
+from aionode.observe._snapshot import ANSWER_S
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from aionode.node import Node
+
+__all__ = ["Trace", "record_trace"]
+
+LOOK_S: Final = 0.2
+"""How often the processes are asked, in seconds; each keeps some thousand callbacks in between."""
+
+MOST_EVENTS: Final = 1_000_000
+"""How many callbacks and things sent a trace has at most."""
+
+AFTER_ALL: Final = 2**60
+"""A number that no callback has yet."""
+
+
+class Trace(msgspec.Struct):
+    """What processes did for a while.
+
+    Attributes:
+        events: The events of the trace event format of Chrome, which Perfetto reads.
+        callbacks: How many callbacks are in it.
+        lost: How many callbacks and things sent were no longer kept when they were asked for.
+        not_kept: Contexts that keep no causes, each with the names of its nodes.
+        silent: Those that did not answer at the end, in the same form.
+        older: Those whose aionode cannot keep causes, or tells them in another form.
+    """
+
+    events: list[dict[str, Any]]
+    callbacks: int = 0
+    lost: int = 0
+    not_kept: dict[str, list[str]] = {}
+    silent: dict[str, list[str]] = {}
+    older: dict[str, list[str]] = {}
+
+    def to_json(self) -> bytes:
+        """Return the file that https://ui.perfetto.dev and chrome://tracing open."""
+        return msgspec.json.encode({"traceEvents": self.events, "displayTimeUnit": "ms"})
+
+
+async def record_trace(node: Node, duration_sec: float) -> Trace:
+    """Record the callbacks of all processes that keep causes, and what they send each other.
+
+    Callbacks that have not ended by then are left out. Cancelling is safe.
+
+    Args:
+        node: A running node.
+        duration_sec: For how long, in seconds.
+    """
+    recording = Recording(node)
+    await recording.look(AFTER_ALL)
+    ends_ns = perf_ns() + round(duration_sec * S_TO_NS)
+    while (left_s := (ends_ns - perf_ns()) / S_TO_NS) > 0:
+        await node.get_clock().sleep(min(left_s, LOOK_S))
+        await recording.look(0)
+    return recording.trace()
+
+
+class Recording:
+    """What the processes have told so far."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._trace = Trace([])
+        self._told: dict[str, CauseReport] = {}  # the latest answer of each context
+        self._offsets: dict[str, int] = {}  # from its clock to this one
+        self._runs: list[tuple[str, RunReport]] = []
+        self._sent: list[tuple[str, SentReport]] = []
+
+    def _named(self, participant: str) -> list[str]:
+        names = (
+            each.fully_qualified_name
+            for each in self._node.graph.nodes()
+            if each.participant == participant
+        )
+        return sorted(name for name in names if not is_hidden(name))
+
+    async def look(self, first: int) -> None:
+        """Ask for what is new; contexts seen for the first time are asked from `first` on."""
+        context = self._node.context
+        trace = self._trace
+        self._keep(
+            answer(context.causes, context.participant, self._next(context.participant, first))
+        )
+        for transport in context.transports:
+            # Contexts that are new are found by a question for nothing.
+            told = await transport.observe("causes", encoded(CauseQuestion()), ANSWER_S)
+            trace.silent = {}
+            for participant, data in told.items():
+                if data is None:
+                    trace.silent[participant] = self._named(participant)
+                    continue
+                report = decoded(data) if data else None
+                if report is None:
+                    trace.older[participant] = self._named(participant)
+                elif not report.is_kept:
+                    self._keep(report)
+                else:
+                    await self._ask(transport, participant, first)
+
+    async def _ask(self, transport: Any, participant: str, first: int) -> None:
+        """Ask one context for all that is new."""
+        while True:
+            question = self._next(participant, first)
+            told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})
+            data = told.get(participant)
+            report = decoded(data) if data else None
+            if report is None:
+                return
+            self._keep(report)
+            if not report.runs and not report.sent:
+                return
+
+    def _next(self, participant: str, first: int) -> CauseQuestion:
+        told = self._told.get(participant)
+        return CauseQuestion(since=(first, first) if told is None else told.next)
+
+    def _keep(self, report: CauseReport) -> None:
+        participant = report.participant
+        offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
+        self._offsets[participant] = min(self._offsets.get(participant, offset), offset)
+        if not report.is_kept:
+            if nodes := self._named(participant):
+                self._trace.not_kept[participant] = nodes
+            return
+        before = self._told.get(participant)
+        self._told[participant] = report
+        if before is not None:
+            self._trace.lost += sum(report.begin) - sum(before.next)
+        room = MOST_EVENTS - len(self._runs) - len(self._sent)
+        self._trace.lost += max(len(report.runs) + len(report.sent) - room, 0)
+        self._runs += [(participant, run) for run in report.runs[:room]]
+        self._sent += [
+            (participant, sent) for sent in report.sent[: max(room - len(report.runs), 0)]
+        ]
+
+    def trace(self) -> Trace:
+        """Return the trace, whose time begins with the first thing in it."""
+        trace = self._trace
+        trace.callbacks = len(self._runs)
+        began_ns = min(
+            [
+                *(run.began_ns + self._offsets[participant] for participant, run in self._runs),
+                *(sent.at_ns + self._offsets[participant] for participant, sent in self._sent),
+            ],
+            default=0,
+        )
+        zeros = {each: began_ns - offset for each, offset in self._offsets.items()}
+        drawing = Drawing(trace.events, zeros)
+        for participant, report in self._told.items():
+            nodes = ", ".join(self._named(participant))
+            drawing.add_process(
+                participant, f"{nodes or report.program} ({report.host} {report.pid})"
+            )
+        drawing.add_runs(self._runs)
+        drawing.add_sent(self._sent)
+        return trace
+
+
+class Drawing:
+    """Makes events of what was told.
+
+    Callbacks of one entity are on a track of their own; those that overlap, on several.
+
+    Args:
+        events: Where they go.
+        zeros: When the trace begins, by the clock of each context.
+    """
+
+    def __init__(self, events: list[dict[str, Any]], zeros: dict[str, int]) -> None:
+        self._events = events
+        self._zeros = zeros
+        self._processes: dict[str, int] = {}
+        self._tracks: dict[tuple[str, str, int], int] = {}
+        self._free: dict[tuple[str, str], list[int]] = {}  # when each track of an entity is free
+        self._places: dict[tuple[str, str, bytes, int, int], int] = {}  # the track of each run
+        self._takers: dict[tuple[str, bytes, int], list[tuple[str, int, int]]] = {}
+
+    def add_process(self, participant: str, name: str) -> None:
+        """Name a process."""
+        number = self._processes[participant] = len(self._processes) + 1
+        self._events.append(
+            {"ph": "M", "name": "process_name", "pid": number, "tid": 0, "args": {"name": name}}
+        )
+
+    def add_runs(self, runs: Iterable[tuple[str, RunReport]]) -> None:
+        """Draw callbacks."""
+        for participant, run in sorted(runs, key=lambda each: each[1].began_ns):
+            entity = f"{run.node} {run.callback.rpartition('.')[2]} ({run.name})"
+            free = self._free.setdefault((participant, entity), [])
+            lane = next((n for n, at_ns in enumerate(free) if at_ns <= run.began_ns), len(free))
+            free[lane : lane + 1] = [run.ended_ns]
+            track = self._track(participant, entity, lane)
+            self._places[place_of(participant, run)] = track
+            taken = run.kind, run.gid, run.sequence
+            self._takers.setdefault(taken, []).append((participant, track, run.began_ns))
+            self._events.append(
+                {
+                    "ph": "X",
+                    "name": run.callback.rpartition(".")[2],
+                    "cat": run.party,
+                    "pid": self._processes[participant],
+                    "tid": track,
+                    "ts": self._us(participant, run.began_ns),
+                    "dur": (run.ended_ns - run.began_ns) / 1e3,
+                    "args": {
+                        run.kind: run.name,
+                        "number": run.sequence,
+                        "waited_ms": (run.began_ns - run.entered_ns) / 1e6,
+                    },
+                }
+            )
+
+    def add_sent(self, entries: Iterable[tuple[str, SentReport]]) -> None:
+        """Draw what was sent, with an arrow to each callback that took it."""
+        for number, (participant, sent) in enumerate(entries, 1):
+            calls = [run for run in sent.causes if run.callback]
+            places = (self._places.get(place_of(participant, run)) for run in calls)
+            track = next((place for place in places if place is not None), None)
+            if track is None:
+                track = self._track(participant, f"{sent.node} sends", 0)
+            place = {
+                "pid": self._processes[participant],
+                "tid": track,
+                "ts": self._us(participant, sent.at_ns),
+            }
+            name = f"{sent.kind} {sent.name}"
+            number_of = {"number": sent.sequence}
+            self._events.append(
+                {"ph": "X", "name": name, "cat": "sent", "dur": 0.001, **place, "args": number_of}
+            )
+            arrow = {"name": name, "cat": "cause", "id": number}
+            takers = self._takers.get((sent.kind, sent.gid, sent.sequence), [])
+            if takers:
+                self._events.append({"ph": "s", **arrow, **place})
+            for step, (taker, track_of_taker, began_ns) in enumerate(takers, 1):
+                self._events.append(
+                    {
+                        "ph": "f" if step == len(takers) else "t",
+                        "bp": "e",
+                        **arrow,
+                        "pid": self._processes[taker],
+                        "tid": track_of_taker,
+                        "ts": self._us(taker, began_ns),
+                    }
+                )
+
+    def _us(self, participant: str, at_ns: int) -> float:
+        return (at_ns - self._zeros[participant]) / 1e3
+
+    def _track(self, participant: str, entity: str, lane: int) -> int:
+        key = participant, entity, lane
+        if key not in self._tracks:
+            self._tracks[key] = track = len(self._tracks) + 1
+            self._events.append(
+                {
+                    "ph": "M",
+                    "name": "thread_name",
+                    "pid": self._processes[participant],
+                    "tid": track,
+                    "args": {"name": entity},
+                }
+            )
+        return self._tracks[key]
+
+
+def place_of(participant: str, run: RunReport) -> tuple[str, str, bytes, int, int]:
+    """Return what identifies a run in all that was told."""
+    return participant, f"{run.node} {run.name}", run.gid, run.sequence, run.began_ns

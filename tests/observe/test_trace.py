@@ -1,0 +1,93 @@
+"""Traces: callbacks of several processes on one axis of time, with arrows."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+
+from aionode import Node
+from aionode.cli._nouns.trace import record
+from aionode.cli._support.output import Output
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.observe import record_trace
+from aionode.testing import local_context
+from tests.support.peers import contexts_over
+
+REQUIRED: Final = {
+    "M": {"name", "pid", "tid", "args"},
+    "X": {"name", "cat", "pid", "tid", "ts", "dur", "args"},
+    "s": {"name", "cat", "id", "pid", "tid", "ts"},
+    "t": {"name", "cat", "id", "pid", "tid", "ts", "bp"},
+    "f": {"name", "cat", "id", "pid", "tid", "ts", "bp"},
+}
+"""The fields of each phase in the trace event format, which Perfetto and Chrome read."""
+
+
+async def traced(way: str) -> Any:
+    """Return the trace of a talker and a listener, which sends the same on."""
+    async with (
+        contexts_over(way, causes=True) as (a, b),
+        Node("talker", context=a) as talker,
+        Node("listener", context=b) as listener,
+    ):
+        publisher = talker.create_publisher(Int32, "numbers", 10)
+        answers = listener.create_publisher(Int32, "answers", 10)
+
+        def on_tick() -> None:
+            publisher.publish(Int32())
+
+        async def on_number(message: Int32) -> None:
+            await asyncio.to_thread(lambda: None)
+            answers.publish(message)
+
+        listener.create_subscription(Int32, "numbers", on_number)
+        await publisher.wait_for_subscribers()
+        talker.create_timer(0.01, on_tick)
+        return await record_trace(talker, 0.3)
+
+
+@pytest.mark.parametrize("way", ["local", "link"])
+async def test_callbacks_and_arrows_are_true(way: str) -> None:
+    """An arrow goes from what a callback sent to the callback that took it, never back in time."""
+    trace = await traced(way)
+
+    events = trace.events
+    slices = [each for each in events if each["ph"] == "X"]
+    named = {each["name"] for each in slices}
+    assert {"on_tick", "on_number", "message /numbers", "message /answers"} <= named
+    assert (trace.lost, trace.not_kept, trace.silent, trace.older) == (0, {}, {}, {})
+    calls = [each for each in slices if each["cat"] in ("timer", "subscription")]
+    assert trace.callbacks == len(calls)
+    starts = {each["id"]: each for each in events if each["ph"] == "s"}
+    ends = [each for each in events if each["ph"] in "tf"]
+    assert len(ends) > 5
+    assert all(REQUIRED[each["ph"]] <= each.keys() for each in events)
+    assert min(each["ts"] for each in slices) == 0
+    for end in ends:
+        start = starts[end["id"]]
+        assert end["ts"] >= start["ts"] - 1000  # a link may deliver before the sender goes on
+        assert any(
+            call["tid"] == end["tid"] and call["ts"] == end["ts"] and call["name"] == "on_number"
+            for call in calls
+        )
+    for one in calls:  # on one track, none overlaps the next
+        for other in calls:
+            if one is not other and one["tid"] == other["tid"] and one["ts"] <= other["ts"]:
+                assert other["ts"] >= one["ts"] + one["dur"] - 0.001
+
+
+async def test_the_command_writes_a_file_and_names_who_takes_no_part(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the remedy; the exit status is 1 where nobody does."""
+    path = tmp_path / "trace.json"
+    async with Node("robot", context=local_context()) as node:
+        status = await record(node, path, output=Output(), duration=0.01)
+
+    assert status == 1
+    assert json.loads(path.read_bytes())["traceEvents"] == []
+    assert "/robot keeps no causes: start it with AIONODE_CAUSES=1" in capsys.readouterr().out
