@@ -10,10 +10,20 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from aionode.engine.wire.cdr import decode, encode
 from aionode.errors import MessageError
-from aionode.image import compress, decompress, from_numpy, from_pil, to_numpy, to_pil
+from aionode.image import (
+    compress,
+    compress_depth,
+    decompress,
+    from_numpy,
+    from_pil,
+    to_numpy,
+    to_pil,
+)
 from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import check
@@ -245,6 +255,55 @@ def test_compressed_depth_is_read(encoding: str) -> None:
     expected = pixels if encoding == "16UC1" else [[np.nan, 4.0], [4000 / 1500, 1.6]]
     assert depth.encoding == encoding
     np.testing.assert_allclose(to_numpy(depth), expected, rtol=1e-6)
+
+
+DEPTHS = st.floats(0.1875, 9.875, width=32)
+"""Metres that 16 bits of inverse depth hold with the usual quantization."""
+
+
+@given(st.lists(DEPTHS, min_size=1, max_size=9))
+def test_metres_come_back_from_compressed_depth(metres: list[float]) -> None:
+    """As exactly as the quantization says: steps of 1/10100 of inverse metres."""
+    image = from_numpy(np.array([metres], np.float32), "32FC1")
+
+    found = to_numpy(decompress(compress_depth(image)))[0]
+
+    assert np.abs(1 / found - 1 / np.array(metres)).max() < 1.2 / 10100
+
+
+def test_depths_that_cannot_be_told_are_unknown_in_compressed_depth() -> None:
+    """Too far or too near, none, or no depth at all: image_transport's overflow is no depth."""
+    image = from_numpy(np.array([[10.0, 0.1, 0.0, -1.0, np.nan, np.inf]], np.float32), "32FC1")
+
+    assert np.isnan(to_numpy(decompress(compress_depth(image)))).all()
+
+
+def test_compressed_depth_is_written_as_image_transport_writes_it() -> None:
+    """Its header, quantization and truncation, computed by its code for 1 m, 2.5 m and 10 m."""
+    image = from_numpy(np.array([[1.0, 2.5, 9.99]], np.float32), "32FC1", Header(frame_id="eye"))
+    message = compress_depth(image)
+
+    assert message.format == "32FC1; compressedDepth png"
+    assert message.header.frame_id == "eye"
+    assert struct.unpack_from("<iff", message.data) == (0, 10100.0, -1009.0)
+    picture = decompress(CompressedImage(format="png", data=bytes(message.data)[12:]))
+    assert to_numpy(picture).tolist() == [[9091, 3031, 2]]
+
+
+@pytest.mark.parametrize("encoding", ["16UC1", "mono16"])
+def test_millimetres_stay_as_they_are_up_to_the_greatest_depth(encoding: str) -> None:
+    """Beyond it they are 0, which is unknown."""
+    image = from_numpy(np.array([[0, 1500, 3000, 3001]], np.uint16), encoding)
+    message = compress_depth(image, depth_max=3.0)
+
+    assert message.format == f"{encoding}; compressedDepth png"
+    assert to_numpy(decompress(message)).tolist() == [[0, 1500, 3000, 0]]
+
+
+def test_colours_are_no_depth() -> None:
+    """The error says what is."""
+    with pytest.raises(ValueError, match="bgr8 is no depth; 16UC1, mono16 and 32FC1 fit"):
+        compress_depth(from_numpy(BGR, "bgr8"))
 
 
 @pytest.mark.parametrize("data", [b"", b"short", bytes(12), bytes(12) + b"RVL"])

@@ -20,7 +20,10 @@ SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
 """Where the data of packages lies of which aionode has programs, such as launch files."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
-    "diagnostic_aggregator": {"aggregator_node": "_diagnostics.aggregator_node"},
+    "diagnostic_aggregator": {
+        "add_analyzer": "_diagnostics.add_analyzer",
+        "aggregator_node": "_diagnostics.aggregator_node",
+    },
     "image_transport": {"republish": "_camera.republish"},
     "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},

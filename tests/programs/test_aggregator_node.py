@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -18,6 +19,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from aionode.interfaces.std_msgs.msg import Header
+from aionode.programs._diagnostics.add_analyzer import AddAnalyzer
 from aionode.programs._diagnostics.aggregator_node import Aggregator
 from aionode.programs._diagnostics.analyzers import without_prefix
 from aionode.testing import ManualClock, settle
@@ -276,6 +278,40 @@ async def test_values_of_a_part_are_passed_on(panel: Callable[..., Panel]) -> No
     own, part = parts.shown[-1].status[:2]
     assert own.values == [KeyValue(key="/arms/a", value="warm")]
     assert (part.hardware_id, part.values) == ("7", values)
+
+
+OPTIONAL: dict[str, Any] = {
+    "eyes.type": GENERIC,
+    "eyes.path": "Eyes",
+    "eyes.startswith": ["/eyes"],
+    "frequency": 10,
+}
+
+
+async def test_analyzers_are_added_while_it_runs(
+    panel: Callable[..., Panel], start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By the parameters of add_analyzer that belong to an analyzer; those of before stay."""
+    parts = panel(**ROBOT)
+    before = await parts.report(__arms__left=OK, __eyes__left=WARN)
+    adding = asyncio.ensure_future(start(AddAnalyzer, **OPTIONAL).add())  # noqa: TID251  # its task
+    while not adding.done():
+        await parts.clock.advance(0.1)
+    await adding
+    after = await parts.report(__arms__left=OK, __eyes__left=WARN)
+
+    assert "/Robot/Eyes" not in before
+    assert after["/Robot/Eyes"] == "1 Warning"
+    assert after["/Robot/Arms"] == "0 OK"
+    log = capsys.readouterr().err
+    assert "Parameters succesfully set" in log
+    assert "frequency" not in log
+
+
+async def test_without_an_analyzer_there_is_nothing_to_add(start: Start) -> None:
+    """The original sets nothing, and says that it succeeded."""
+    with pytest.raises(CommandError, match="no parameters of an analyzer are given"):
+        await start(AddAnalyzer, frequency=10).add()
 
 
 async def test_a_rate_has_to_be_one(start: Start) -> None:

@@ -7,13 +7,14 @@ import os
 import signal
 import sys
 from collections.abc import AsyncIterator, Callable, Iterator
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
 
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
-from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.interfaces.sensor_msgs.msg import Joy, JoyFeedback
 from aionode.programs._joy.joy_node import JoyNode
 from aionode.programs._joy.joystick import Joystick, input_devices
 from aionode.programs._joy.teleop_node import TeleopTwistJoy
@@ -56,6 +57,8 @@ PAD: dict[int, list[Any]] = {
 }
 """The capabilities of a game pad, as evdev reports them."""
 
+FF, RUMBLE = 0x15, 0x50
+
 RECORDED = [
     Event(ABS, X, -3000), Event(0, 0, 0), Event(ABS, X, -9500), Event(ABS, Y, -16384),
     Event(0, 0, 0), Event(KEY, SOUTH, 1), Event(0, 0, 0), Event(ABS, HAT_Y, -1), Event(0, 0, 0),
@@ -72,8 +75,10 @@ class Pad:
         self.known = capabilities
         self.events: list[Event] = []
         self.fd, self.other_end = os.pipe()
-        self.is_there = True
+        self.is_there = self.is_writable = True
         self.is_closed = False
+        self.uploaded: list[Any] = []
+        self.played: list[tuple[int, int, int]] = []
 
     def capabilities(self, verbose: bool = False, absinfo: bool = True) -> Any:
         """Return what it has, as evdev does."""
@@ -86,6 +91,17 @@ class Pad:
             raise OSError(errno.ENODEV, os.strerror(errno.ENODEV))
         events, self.events = self.events, []
         return events
+
+    def upload_effect(self, effect: Any) -> int:
+        """Note an effect, which has one number from then on."""
+        if not self.is_writable:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        self.uploaded.append((effect.u.ff_rumble_effect, effect.ff_replay))
+        return 7
+
+    def write(self, etype: int, code: int, value: int) -> None:
+        """Note what is played."""
+        self.played.append((etype, code, value))
 
     def close(self) -> None:
         """Note that nobody reads it any more."""
@@ -241,6 +257,66 @@ async def test_parameters_that_do_not_fit_are_refused(
     """In the words of the original."""
     with pytest.raises(CommandError, match=text):
         await desk.begin(**{name: value})
+
+
+@pytest.fixture
+def motors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have evdev's structures of force feedback as tuples."""
+
+    def effect(_kind: int, _id: int, _direction: int, _trigger: Any, replay: Any, u: Any) -> Any:
+        return SimpleNamespace(ff_replay=replay, u=u)
+
+    def pair(one: int, other: int) -> tuple[int, int]:
+        return one, other
+
+    ff = SimpleNamespace(
+        Effect=effect, EffectType=SimpleNamespace, Replay=pair, Rumble=pair, Trigger=pair
+    )
+    monkeypatch.setitem(sys.modules, "evdev", SimpleNamespace(ff=ff))
+
+
+def rumble(intensity: float, **others: int) -> JoyFeedback:
+    """Return what has a joystick rumble."""
+    return JoyFeedback(type=JoyFeedback.TYPE_RUMBLE, intensity=intensity, **others)
+
+
+@pytest.mark.usefixtures("motors")
+async def test_feedback_rumbles_for_a_second(desk: Desk, node_factory: Callable[..., Any]) -> None:
+    """As strongly as it says; what is no rumble, or out of range, is ignored as in the original."""
+    pad = desk.plugged[0] = Pad(capabilities=PAD | {FF: [RUMBLE]})
+    await desk.begin()
+    publisher = node_factory("game").create_publisher(JoyFeedback, "joy/set_feedback", 10)
+    ignored = [rumble(1.5), rumble(0.5, id=1), JoyFeedback(type=JoyFeedback.TYPE_LED)]
+    for feedback in (rumble(1.0), *ignored, rumble(0.0)):
+        publisher.publish(feedback)
+        await settle()
+
+    assert pad.uploaded == [((0xFFFF, 0xFFFF), (1000, 0)), ((0, 0), (1000, 0))]
+    assert pad.played == [(FF, 7, 1)] * 2
+
+
+@pytest.mark.usefixtures("motors")
+@pytest.mark.parametrize(("effects", "warnings"), [([RUMBLE], 1), ([], 0)])
+async def test_a_joystick_that_cannot_rumble_goes_on(
+    desk: Desk,
+    node_factory: Callable[..., Any],
+    capsys: pytest.CaptureFixture[str],
+    effects: list[int],
+    warnings: int,
+) -> None:
+    """One that may not be written to is said once; one without motors is nothing special."""
+    pad = desk.plugged[0] = Pad(capabilities=PAD | {FF: effects})
+    pad.is_writable = False
+    await desk.begin()
+    publisher = node_factory("game").create_publisher(JoyFeedback, "joy/set_feedback", 10)
+    for _ in range(2):
+        publisher.publish(rumble(1.0))
+        await settle()
+    await desk.play(Event(KEY, SOUTH, 1))
+
+    assert desk.state[1][0] == 1
+    said = "Joystick 'Pad' does not rumble: Permission denied"
+    assert capsys.readouterr().err.count(said) == warnings
 
 
 def test_an_axis_without_a_range_stays_in_its_middle() -> None:

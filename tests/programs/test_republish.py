@@ -55,7 +55,7 @@ async def viewer(node_factory: Callable[..., Any]) -> Viewer:
 
 
 async def test_raw_images_become_compressed_ones(start: Start, viewer: Viewer) -> None:
-    """Both transports are there by default; the format is as compressed_image_transport says it."""
+    """All transports are there by default; the format is as compressed_image_transport says it."""
     start(Republisher)
     viewer.look(CompressedImage, "out/compressed")
     (seen,) = await viewer.show(Image, "in", picture())
@@ -65,6 +65,33 @@ async def test_raw_images_become_compressed_ones(start: Start, viewer: Viewer) -
     again = uncompressed(seen)
     assert again.encoding == "bgr8"
     assert np.abs(to_numpy(again).astype(int) - GRADIENT).max() < 20
+
+
+async def test_depths_become_compressed_ones(start: Start, viewer: Viewer) -> None:
+    """With the format and parameters of compressed_depth_image_transport."""
+    start(Republisher, "raw", "compressedDepth", **{"out.compressedDepth.depth_max": 3.0})
+    viewer.look(CompressedImage, "out/compressedDepth")
+    depth = from_numpy(np.array([[1.0, 2.5, 3.5]], np.float32), "32FC1", Header(frame_id="eye"))
+    (seen,) = await viewer.show(Image, "in", depth)
+
+    assert seen.format == "32FC1; compressedDepth png"
+    assert seen.header.frame_id == "eye"
+    found = to_numpy(uncompressed(seen))[0]
+    assert found[:2] == pytest.approx([1.0, 2.5], rel=1e-3)
+    assert np.isnan(found[2])
+
+
+async def test_colours_are_no_depths(
+    start: Start, viewer: Viewer, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Who listens to compressedDepth of a colour camera is told; the other transports go on."""
+    start(Republisher)
+    viewer.look(CompressedImage, "out/compressedDepth")
+    viewer.look(Image, "out")
+    (seen,) = await viewer.show(Image, "in", picture())
+
+    assert seen.encoding == "bgr8"
+    assert "bgr8 is no depth; 16UC1, mono16 and 32FC1 fit" in capsys.readouterr().err
 
 
 async def test_compressed_images_become_raw_ones(start: Start, viewer: Viewer) -> None:
@@ -153,6 +180,7 @@ async def test_a_rule_may_name_the_topic_or_its_base(
     [
         ("in_transport", "theora", "in_transport is 'theora', which is not available here"),
         ("out.compressed.format", "tiff", "'tiff'; jpeg and png fit"),
+        ("out.compressedDepth.format", "rvl", "'rvl'; png fits"),
     ],
 )
 async def test_what_there_is_not_is_refused(start: Start, name: str, value: str, text: str) -> None:

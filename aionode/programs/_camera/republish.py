@@ -11,8 +11,12 @@ import aionode
 from aionode import Node, Parameter, Publisher, PublisherEventCallbacks, Subscription
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
-from aionode.image import compress, decompress, from_numpy, to_numpy
-from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+from aionode.image import compress, compress_depth, decompress, from_numpy, to_numpy
+from aionode.interfaces.rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+)
 from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 
 __all__ = ["Republisher", "compressed", "main", "topic_of", "uncompressed"]
@@ -24,7 +28,7 @@ INPUTS: Final[dict[str, Any]] = {
 }
 """The transports that can be read, and their message types."""
 
-OUTPUTS: Final[dict[str, Any]] = {"raw": Image, "compressed": CompressedImage}
+OUTPUTS: Final = INPUTS
 """The transports that can be written."""
 
 FORMATS: Final = ("jpeg", "png")
@@ -32,6 +36,9 @@ FORMATS: Final = ("jpeg", "png")
 QUALITY: Final = "out.compressed.jpeg_quality"
 LEVEL: Final = "out.compressed.png_level"
 FORMAT: Final = "out.compressed.format"
+
+DEPTH: Final = "out.compressedDepth."
+"""How the names of parameters of depth begin."""
 
 
 def topic_of(node: Node, base: str, transport: str) -> str:
@@ -100,6 +107,8 @@ class Republisher(Node):
         self.format = "jpeg"
         if "compressed" in transports:
             self.declare_compression()
+        if "compressedDepth" in transports:
+            self.declare_depth()
         self.input: Subscription[Any] | None = None
         events = PublisherEventCallbacks(matched=self.on_matched)
         self.outputs: dict[str, Publisher[Any]] = {
@@ -127,6 +136,19 @@ class Republisher(Node):
         if self.format not in FORMATS:
             raise CommandError(f"{FORMAT} is {self.format!r}; {' and '.join(FORMATS)} fit")
 
+    def declare_depth(self) -> None:
+        """Declare how depths are compressed."""
+        format_ = self.declare_parameter(f"{DEPTH}format", "png").value
+        if format_ != "png":
+            raise CommandError(f"{DEPTH}format is {format_!r}; png fits, and there is no RVL here")
+        for name, usual, most in (("depth_max", 10.0, 100.0), ("depth_quantization", 100.0, 150.0)):
+            metres = FloatingPointRange(from_value=1.0, to_value=most)
+            described = ParameterDescriptor(floating_point_range=[metres])
+            self.declare_parameter(f"{DEPTH}{name}", usual, described)
+        levels = IntegerRange(from_value=0, to_value=9, step=1)
+        described = ParameterDescriptor(integer_range=[levels])
+        self.declare_parameter(f"{DEPTH}png_level", 3, described)
+
     def on_matched(self, _info: object) -> None:
         """Subscribe while there are subscriptions."""
         is_wanted = any(each.get_subscription_count() for each in self.outputs.values())
@@ -145,12 +167,9 @@ class Republisher(Node):
             for transport, each in self.outputs.items()
             if each.get_subscription_count()
         }
-        quality = level = 0
-        if "compressed" in self.outputs:
-            quality, level = self.get_parameter(QUALITY).value, self.get_parameter(LEVEL).value
         for transport, output in listened.items():
             try:
-                image = self.converted(given, transport, quality, level)
+                image = self.converted(given, transport)
             except ValueError as error:
                 if str(error) != self.warned:
                     self.get_logger().error(f"an image is skipped: {error}")
@@ -159,14 +178,25 @@ class Republisher(Node):
             if not output.destroyed:
                 output.publish(image)
 
-    def converted(
-        self, given: Image | CompressedImage, transport: str, quality: int, level: int
-    ) -> Image | CompressedImage:
+    def converted(self, given: Image | CompressedImage, transport: str) -> Image | CompressedImage:
         """Return an image in the form of a transport."""
         if self.source == transport:
             return given
         image = uncompressed(given) if isinstance(given, CompressedImage) else given
-        return image if transport == "raw" else compressed(image, self.format, quality, level)
+        if transport == "raw":
+            return image
+        if transport == "compressed":
+            return compressed(image, self.format, self.value(QUALITY), self.value(LEVEL))
+        return compress_depth(
+            image,
+            depth_max=self.value(f"{DEPTH}depth_max"),
+            depth_quantization=self.value(f"{DEPTH}depth_quantization"),
+            compress_level=self.value(f"{DEPTH}png_level"),
+        )
+
+    def value(self, name: str) -> Any:
+        """Return the value of a parameter."""
+        return self.get_parameter(name).value
 
 
 def main() -> None:

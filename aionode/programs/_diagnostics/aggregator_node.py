@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import aionode
-from aionode import Node
+from aionode import Node, Parameter
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from aionode.programs._diagnostics.analyzers import Analyzers, Other, level_of
@@ -27,10 +28,12 @@ class Aggregator(Node):
     """
 
     def __init__(self) -> None:
-        super().__init__("analyzers", automatically_declare_parameters_from_overrides=True)
-        given = {
-            name: parameter.value for name, parameter in self.get_parameters_by_prefix("").items()
-        }
+        super().__init__(
+            "analyzers",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        given = self.given()
         rate = given.get("pub_rate", 1.0)
         if not isinstance(rate, int | float) or not 0 < rate < math.inf:
             raise CommandError(f"pub_rate is {rate!r}; use a number above 0")
@@ -38,7 +41,9 @@ class Aggregator(Node):
         path = str(given.get("path", ""))
         base = f"/{path}" if path else ""
         log = self.get_logger().get_child("Aggregator")
-        self.group = Analyzers(self.now, log.error).group(base, given)
+        self.base = base
+        self.make_analyzers = Analyzers(self.now, log.error).group
+        self.group = self.make_analyzers(base, given)
         self.other = Other(base, is_error=bool(given.get("other_as_errors", False)), now=self.now)
         self.log = log
         self.warned: set[str] = set()
@@ -48,6 +53,17 @@ class Aggregator(Node):
         self.publisher = self.create_publisher(DiagnosticArray, "/diagnostics_agg", 1)
         self.top = self.create_publisher(DiagnosticStatus, "/diagnostics_toplevel_state", 1)
         self.create_timer(1.0 / rate, self.publish)
+        self.add_post_set_parameters_callback(self.on_parameters)
+
+    def given(self) -> dict[str, Any]:
+        """Return the values of all parameters."""
+        parameters = self.get_parameters_by_prefix("")
+        return {name: parameter.value for name, parameter in parameters.items()}
+
+    def on_parameters(self, parameters: Sequence[Parameter]) -> None:
+        """Make the analyzers anew if parameters of one have been set, as add_analyzer does it."""
+        if any("." in parameter.name for parameter in parameters):
+            self.group = self.make_analyzers(self.base, self.given())
 
     def now(self) -> float:
         """Return the time, in seconds."""

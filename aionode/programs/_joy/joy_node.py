@@ -10,7 +10,7 @@ from typing import Final
 import aionode
 from aionode import Node
 from aionode.errors import CommandError
-from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.interfaces.sensor_msgs.msg import Joy, JoyFeedback
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.programs._joy.joystick import Device, Joystick, input_devices
 
@@ -52,8 +52,9 @@ class JoyNode(Node):
             raise CommandError("coalesce_interval_ms must be positive")
         self.devices = devices
         self.loop = asyncio.get_running_loop()
-        self.has_warned = False
+        self.has_warned = self.has_failed = False
         self.publisher = self.create_publisher(Joy, "joy", 10)
+        self.create_subscription(JoyFeedback, "joy/set_feedback", self.on_feedback, 10)
         self.soon = self.create_timer(coalesce_ms / 1e3, self.publish_once, autostart=False)
         if rate:
             self.create_timer(1.0 / rate, self.publish)
@@ -120,6 +121,19 @@ class JoyNode(Node):
             header = Header(stamp=self.get_clock().now().to_msg(), frame_id="joy")
             axes, buttons = self.joystick.axes, self.joystick.buttons
             self.publisher.publish(Joy(header=header, axes=axes, buttons=buttons))
+
+    def on_feedback(self, feedback: JoyFeedback) -> None:
+        """Rumble; a joystick has one rumble, number 0, and nothing else that is set here."""
+        is_rumble = feedback.type == JoyFeedback.TYPE_RUMBLE and feedback.id == 0
+        if self.joystick is None or not is_rumble or not 0.0 <= feedback.intensity <= 1.0:
+            return
+        try:
+            self.joystick.rumble(feedback.intensity)
+        except OSError as error:
+            if not self.has_failed:
+                name = self.joystick.device.name
+                self.get_logger().warning(f"Joystick {name!r} does not rumble: {error.strerror}")
+            self.has_failed = True
 
     def close(self) -> None:
         """Stop reading the device."""

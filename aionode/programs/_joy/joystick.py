@@ -15,6 +15,10 @@ EV_KEY: Final = 0x01
 EV_ABS: Final = 0x03
 EV_FF: Final = 0x15
 
+FF_RUMBLE: Final = 0x50
+RUMBLE_MS: Final = 1000
+STRONGEST: Final = 0xFFFF
+
 ABS_X: Final = 0x00
 ABS_Y: Final = 0x01
 HATS: Final = range(0x10, 0x18)
@@ -42,6 +46,12 @@ class Device(Protocol):
 
     def read(self) -> Iterable[Any]:
         """Return the pending events."""
+
+    def upload_effect(self, effect: Any) -> int:
+        """Have the device know an effect, and return its number."""
+
+    def write(self, etype: int, code: int, value: int) -> None:
+        """Have the device do something, such as to play an effect so many times."""
 
     def close(self) -> None:
         """Close the device."""
@@ -97,6 +107,8 @@ class Joystick:
         self.axes = [0.0] * len(self.axis_numbers)
         for code, now in axes.items():
             self.axes[self.axis_numbers[code]] = self.place(code, now.value)
+        self.can_rumble = FF_RUMBLE in capabilities.get(EV_FF, ())
+        self.effect: Any = None
 
     @staticmethod
     def is_one(device: Device) -> bool:
@@ -104,6 +116,26 @@ class Joystick:
         capabilities = device.capabilities(absinfo=False)
         axes, keys = set(capabilities.get(EV_ABS, ())), set(capabilities.get(EV_KEY, ()))
         return {ABS_X, ABS_Y} <= axes and not FIRST_BUTTONS.isdisjoint(keys)
+
+    def rumble(self, intensity: float) -> None:
+        """Rumble for a second, or until the next call; a device that cannot does nothing.
+
+        Args:
+            intensity: How strongly, from 0 to 1.
+
+        Raises:
+            OSError: The device is gone, or may not be written to.
+        """
+        if not self.can_rumble:
+            return
+        from evdev import ff
+
+        if self.effect is None:
+            replay, trigger = ff.Replay(RUMBLE_MS, 0), ff.Trigger(0, 0)
+            self.effect = ff.Effect(FF_RUMBLE, -1, 0, trigger, replay, ff.EffectType())
+        strength = round(intensity * STRONGEST)
+        self.effect.u.ff_rumble_effect = ff.Rumble(strength, strength)
+        self.device.write(EV_FF, self.device.upload_effect(self.effect), 1)
 
     def place(self, code: int, value: int) -> float:
         """Return the position of an axis."""
