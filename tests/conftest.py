@@ -199,9 +199,7 @@ def own_imports() -> Iterator[None]:
     """Have no other test import what this one has `install` find, or see its workspace."""
     before = list(sys.meta_path)
     yield
-    for finder in [each for each in sys.meta_path if each not in before]:
-        if type(finder).__name__ == "AionodeFinder":
-            sys.meta_path.remove(finder)
+    sys.meta_path[:] = before
     if loaded := sys.modules.get("aionode._packages._here"):
         loaded.GIVEN.clear()
     if loaded := sys.modules.get("aionode.idl.named"):

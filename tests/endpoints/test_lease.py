@@ -675,6 +675,8 @@ async def test_a_stop_is_not_held_back_behind_a_message_that_never_comes() -> No
 
 async def test_the_watching_thread_exists_only_while_a_lease_is_open(robot: Robot) -> None:
     """A library leaves no thread behind."""
+    for ending in watching():  # of the test before
+        await asyncio.to_thread(ending.join, 10)
     assert not watching()
     async with robot.speed.lease(stop=STOP):
         other = robot.node.create_publisher(Int8, "other", 10)

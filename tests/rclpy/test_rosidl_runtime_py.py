@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-import aionode.rclpy
 import rosidl_runtime_py as runtime
 from aionode._packages import use
-from aionode.rclpy import _finder
 from ament_index_python import (
     PackageNotFoundError,
     get_package_prefix,
@@ -30,12 +26,7 @@ Sequences = message_class("test_msgs/msg/UnboundedSequences")
 BasicTypes = message_class("test_msgs/msg/BasicTypes")
 
 
-@pytest.fixture(autouse=True)
-def installed() -> Iterator[None]:
-    """Types are imported by their modules' names."""
-    aionode.rclpy.install()
-    yield
-    sys.meta_path.remove(_finder.FINDER)
+pytestmark = pytest.mark.usefixtures("installed")
 
 
 def test_a_message_becomes_yaml() -> None:

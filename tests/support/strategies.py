@@ -6,6 +6,7 @@ import copy
 import pkgutil
 from functools import cache
 from importlib import import_module
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +26,14 @@ from aionode.message import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["any_messages", "message_classes", "messages", "shipped_types", "values"]
+__all__ = [
+    "any_messages",
+    "message_classes",
+    "messages",
+    "shipped_types",
+    "values",
+    "various_classes",
+]
 
 HEAVIEST = 160
 """The most values that a message may have to be drawn as a whole."""
@@ -62,6 +70,29 @@ def is_type(member: object) -> bool:
 def message_classes() -> dict[str, type[Message]]:
     """Return every message class of aionode, parts of services and actions included."""
     return {type_name(part): part for cls in shipped_types().values() for part in parts_of(cls)}
+
+
+@cache
+def various_classes() -> dict[str, type[Message]]:
+    """Return a tenth of all message classes, with each kind of field after each that it follows.
+
+    The code for a class depends on the kinds of its fields and, by their alignment, on their order:
+    the other classes would show nothing new, and there are more of them with each package.
+    """
+    various: dict[str, type[Message]] = {}
+    seen: set[tuple[object, object]] = set()
+    for name, cls in message_classes().items():
+        kinds = [(kind.nested is None and kind.kind, kind.container) for kind in types_of(cls)]
+        pairs = set(pairwise([None, *kinds, None]))
+        if not pairs <= seen:
+            various[name] = cls
+            seen |= pairs
+    return various
+
+
+def types_of(cls: type[Message]) -> list[FieldType]:
+    """Return the types of the fields of a class."""
+    return [field.type for field in fields(cls)]
 
 
 def parts_of(cls: Any) -> Iterator[type[Message]]:

@@ -10,7 +10,8 @@ from tests.support.without_ros import without_ros
 
 
 @pytest.fixture(autouse=True)
-def of_ros() -> Iterator[None]:
+def of_ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The rclpy that is installed."""
     with without_ros():
         yield
+        monkeypatch.undo()  # later it would take aionode's modules away, which are back by then
