@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any, Final
 
-import aionode
-from aionode.arguments import remove_ros_args
-from aionode.programs._mux import Selector, services_of
+from aionode.programs._mux import Selector, run_selector, services_of
 
 __all__ = ["SERVICES", "Demux", "main"]
 
@@ -38,16 +35,5 @@ class Demux(Selector):
 
 
 def main() -> None:
-    """Run the node until Ctrl-C.
-
-    Raises:
-        SystemExit: With status 1, if there are too few arguments.
-    """
-    words = remove_ros_args(sys.argv)[1:]
-    if len(words) < 2:
-        sys.stderr.write(
-            "Incorrect number of arguments. Usage: "
-            "aionode run topic_tools demux <intopic> <outtopic1> [outtopic2...]\n"
-        )
-        raise SystemExit(1)
-    aionode.run(lambda: Demux(*words))
+    """Run the node until Ctrl-C."""
+    run_selector(Demux, "demux <intopic> <outtopic1> [outtopic2...]")

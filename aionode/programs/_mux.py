@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import Any, Final
 
 import aionode
@@ -12,7 +13,7 @@ from aionode.errors import CommandError
 from aionode.idl import define
 from aionode.programs._any_type import AnyTypeNode
 
-__all__ = ["SERVICES", "Mux", "Selector", "main", "services_of"]
+__all__ = ["SERVICES", "Mux", "Selector", "main", "run_selector", "services_of"]
 
 NONE_TOPIC: Final = "__none"
 """The name that selects no topic."""
@@ -168,17 +169,19 @@ class Mux(Selector):
         self.listen(topic)
 
 
-def main() -> None:
-    """Run the node until Ctrl-C.
+def run_selector(make: Callable[..., Selector], usage: str) -> None:
+    """Run a node, made with the words of the command line, until Ctrl-C.
 
     Raises:
         SystemExit: With status 1, if there are too few arguments.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) < 2:
-        sys.stderr.write(
-            "Incorrect number of arguments. Usage: "
-            "aionode run topic_tools mux <outtopic> <intopic1> [intopic2...]\n"
-        )
+        sys.stderr.write(f"Incorrect number of arguments. Usage: aionode run topic_tools {usage}\n")
         raise SystemExit(1)
-    aionode.run(lambda: Mux(*words))
+    aionode.run(lambda: make(*words))
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    run_selector(Mux, "mux <outtopic> <intopic1> [intopic2...]")

@@ -7,13 +7,14 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, Final
+from typing import Final
 
 import aionode
 from aionode import Node
 from aionode.errors import CommandError, LeaseExpiredError
-from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
+from aionode.programs._leased_twists import LeasedTwists
 
 __all__ = ["Keys", "Teleop", "main", "terminal"]
 
@@ -61,9 +62,6 @@ FACTORS: Final[dict[str, tuple[float, float]]] = {
 REPEAT_SEC: Final = 0.1
 """Interval at which the current command is published."""
 
-TTL_SEC: Final = 0.3
-"""Time without a command after which the wheels stop."""
-
 
 class Keys:
     """The command set by the keys.
@@ -79,13 +77,10 @@ class Keys:
         self.move: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     @property
-    def is_moving(self) -> bool:
-        """Whether the robot should move."""
-        return any(self.move)
-
-    @property
-    def twist(self) -> Twist:
-        """The command."""
+    def twist(self) -> Twist | None:
+        """The command; None while the robot should stand still."""
+        if not any(self.move):
+            return None
         x, y, z, around = self.move
         linear = Vector3(x=x * self.speed, y=y * self.speed, z=z * self.speed)
         return Twist(linear=linear, angular=Vector3(z=around * self.turn))
@@ -119,59 +114,34 @@ class Teleop(Node):
     def __init__(self, show: Callable[[str], object]) -> None:
         super().__init__("teleop_twist_keyboard")
         fixed = ParameterDescriptor(read_only=True)
-        self.is_stamped = self.declare_parameter("stamped", False, fixed).value
-        self.frame_id = self.declare_parameter("frame_id", "", fixed).value
-        if self.frame_id and not self.is_stamped:
+        is_stamped = self.declare_parameter("stamped", False, fixed).value
+        frame_id = self.declare_parameter("frame_id", "", fixed).value
+        if frame_id and not is_stamped:
             raise CommandError("'frame_id' can only be set when 'stamped' is True")
         self.keys = Keys(
             self.declare_parameter("speed", 0.5, fixed).value,
             self.declare_parameter("turn", 1.0, fixed).value,
         )
-        kind: Any = TwistStamped if self.is_stamped else Twist
-        self.publisher = self.create_publisher(kind, "cmd_vel", 10)
+        self.twists = LeasedTwists(
+            self, lambda: self.keys.twist, self.on_expired, is_stamped=is_stamped, frame_id=frame_id
+        )
         self.show = show
-        self.is_due = asyncio.Event()
-        self.is_leased = False
-        self.create_timer(REPEAT_SEC, self.is_due.set)
+        self.create_timer(REPEAT_SEC, self.twists.repeat)
 
     def press(self, key: str) -> None:
         """Handle a key, and publish its command at once."""
         text = self.keys.press(key)
         if text is not None:
             self.show(f"{text}\n")
-        elif not self.keys.is_moving and not self.is_leased:
+        elif self.keys.twist is None and not self.twists.is_leased:
             # The end of a lease is itself a stop; this also ends commands of others.
-            self.publisher.publish(self.command(Twist()))
-        self.is_due.set()
+            self.twists.stop()
+        self.twists.repeat()
 
-    def command(self, twist: Twist) -> Any:
-        """Return a command in the message type of the robot."""
-        if not self.is_stamped:
-            return twist
-        stamped = TwistStamped(twist=twist)
-        stamped.header.frame_id = self.frame_id
-        stamped.header.stamp = self.get_clock().now().to_msg()
-        return stamped
-
-    async def drive(self) -> None:
-        """Publish the command of the keys until cancelled; then the stop is sent."""
-        while True:
-            await self.is_due.wait()
-            self.is_due.clear()
-            if not self.keys.is_moving:
-                continue
-            try:
-                async with self.publisher.lease(self.command(Twist()), TTL_SEC) as lease:
-                    self.is_leased = True
-                    while self.keys.is_moving:
-                        lease.publish(self.command(self.keys.twist))
-                        await self.is_due.wait()
-                        self.is_due.clear()
-            except LeaseExpiredError as error:
-                self.keys.move = (0, 0, 0, 0)
-                self.show(f"stopped: {error}; press a key to continue\n")
-            finally:
-                self.is_leased = False
+    def on_expired(self, error: LeaseExpiredError) -> None:
+        """Stand still until the next key."""
+        self.keys.move = (0, 0, 0, 0)
+        self.show(f"stopped: {error}; press a key to continue\n")
 
 
 @contextmanager
@@ -228,7 +198,7 @@ def show(text: str) -> None:
 async def drive_by_keys() -> None:
     """Drive until Ctrl-C, or until the terminal is lost."""
     async with Teleop(show) as node, asyncio.TaskGroup() as tasks:
-        driving = tasks.create_task(node.drive())
+        driving = tasks.create_task(node.twists.drive())
         with terminal(node.press, driving.cancel):
             show(f"{HELP}\n{node.keys}\n")  # from here on keys are handled
             await asyncio.wait([driving])

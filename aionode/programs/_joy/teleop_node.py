@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from typing import Any, Final
 
 import aionode
 from aionode import Node
 from aionode.errors import LeaseExpiredError
-from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.programs._leased_twists import TTL_SEC, LeasedTwists
 
 __all__ = ["TeleopTwistJoy", "main"]
 
@@ -21,17 +21,14 @@ ANGULAR: Final = {"yaw": (2, 0.5, 1.0), "pitch": (-1, 0.0, 0.0), "roll": (-1, 0.
 
 START_SEC: Final = 0.01
 
-TTL_SEC: Final = 0.3
-"""The time without a joystick message after which the wheels stop."""
-
 
 class TeleopTwistJoy(Node):
     """Publishes the joystick's command on `cmd_vel`, under a lease, while its button is held."""
 
     def __init__(self) -> None:
         super().__init__("teleop_twist_joy_node")
-        self.is_stamped = self.declare_parameter("publish_stamped_twist", False).value
-        self.frame_id = self.declare_parameter("frame", "teleop_twist_joy").value
+        is_stamped = self.declare_parameter("publish_stamped_twist", False).value
+        frame_id = self.declare_parameter("frame", "teleop_twist_joy").value
         self.declare_parameter("require_enable_button", True)
         self.declare_parameter("enable_button", 5)
         self.declare_parameter("enable_turbo_button", -1)
@@ -41,15 +38,13 @@ class TeleopTwistJoy(Node):
                 self.declare_parameter(f"axis_{kind}.{name}", axis)
                 self.declare_parameter(f"scale_{kind}.{name}", scale)
                 self.declare_parameter(f"scale_{kind}_turbo.{name}", turbo)
-        command: Any = TwistStamped if self.is_stamped else Twist
-        self.publisher = self.create_publisher(command, "cmd_vel", 10)
         self.command: Twist | None = None
-        self.is_due = asyncio.Event()
-        self.is_leased = False
-        self.has_stopped = False
+        self.twists = LeasedTwists(
+            self, lambda: self.command, self.on_expired, is_stamped=is_stamped, frame_id=frame_id
+        )
         self.tell()
         self.create_subscription(Joy, "joy", self.on_joy, 10)
-        self.create_timer(START_SEC, self.drive)
+        self.create_timer(START_SEC, self.twists.drive)
 
     def value(self, name: str) -> Any:
         """Return the value of a parameter."""
@@ -82,11 +77,10 @@ class TeleopTwistJoy(Node):
             self.command = self.twist(joy, "")
         else:
             self.command = None
-            if not (self.is_leased or self.has_stopped):
+            if not (self.twists.is_leased or self.twists.has_stopped):
                 # The end of a lease is itself a stop; this also ends commands of others.
-                self.publisher.publish(self.message(Twist()))
-                self.has_stopped = True
-        self.is_due.set()
+                self.twists.stop()
+        self.twists.repeat()
 
     def is_pressed(self, joy: Joy, name: str) -> bool:
         """Return whether the button of a parameter is pressed."""
@@ -109,38 +103,13 @@ class TeleopTwistJoy(Node):
         value = float(joy.axes[axis]) * float(self.value(f"scale_{kind}{which}.{name}"))
         return value if math.isfinite(value) else 0.0
 
-    def message(self, twist: Twist) -> Any:
-        """Return a command in the message type of the robot."""
-        if not self.is_stamped:
-            return twist
-        stamped = TwistStamped(twist=twist)
-        stamped.header.frame_id = self.frame_id
-        stamped.header.stamp = self.get_clock().now().to_msg()
-        return stamped
-
-    async def drive(self) -> None:
-        """Publish commands until the node ends; a stop is sent in any case."""
-        while True:
-            await self.is_due.wait()
-            self.is_due.clear()
-            if self.command is None:
-                continue
-            try:
-                async with self.publisher.lease(self.message(Twist()), TTL_SEC) as lease:
-                    self.is_leased = True
-                    while self.command is not None:
-                        lease.publish(self.message(self.command))
-                        await self.is_due.wait()
-                        self.is_due.clear()
-            except LeaseExpiredError:
-                self.command = None
-                self.get_logger().warning(
-                    f"stopped: the joystick sent nothing for {TTL_SEC:g} s; it is "
-                    "unplugged, or its autorepeat_rate is too low"
-                )
-            finally:
-                self.is_leased = False
-                self.has_stopped = True
+    def on_expired(self, _: LeaseExpiredError) -> None:
+        """Forget the command of a joystick that sends nothing any more."""
+        self.command = None
+        self.get_logger().warning(
+            f"stopped: the joystick sent nothing for {TTL_SEC:g} s; it is "
+            "unplugged, or its autorepeat_rate is too low"
+        )
 
 
 def main() -> None:
