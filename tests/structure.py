@@ -42,7 +42,7 @@ def is_private(name: str) -> bool:
 def imported_by(path: Path) -> Iterator[tuple[str, ...]]:
     """Yield each name of aionode that a module imports: its room, what is within, and the name.
 
-    None if the module has no private name at all. ROS's packages have their own names, and are one room.
+    None if it has no private name at all. ROS's packages have their own names, and are one room.
     """
     text = path.read_text(encoding="utf-8")
     if not PRIVATE_NAME.search(text):  # as in the generated modules, which are half of all lines
