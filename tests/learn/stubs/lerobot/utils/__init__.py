@@ -1,0 +1,3 @@
+"""What all of LeRobot uses."""
+
+__all__: list[str] = []
