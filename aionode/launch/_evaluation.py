@@ -24,7 +24,7 @@ from aionode.errors import (
 )
 from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
-from aionode.launch._stand_ins import StandIn, missing_module, with_stand_ins
+from aionode.launch._stand_ins import missing_module, with_stand_ins
 from aionode.launch.plan import Opaque, Step, Timer, Watch
 from aionode.rclpy.missing import advice
 from launch.actions import (
@@ -37,6 +37,7 @@ from launch.event_handler import entities_of
 from launch.launch_context import KnownLater, LaunchContext
 from launch.launch_description import LaunchDescription
 from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.stand_in import StandIn
 
 __all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_context"]
 

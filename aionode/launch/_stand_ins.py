@@ -3,84 +3,21 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
-from typing import Any, Final, NoReturn, TypeVar
+from typing import Any, Final, TypeVar
 
 from aionode._packages import stand_in
-from aionode.errors import PackageNotFoundError
-from launch.launch_context import LaunchContext
-from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.stand_in import StandIn, package_of
 
-__all__ = ["StandIn", "forget_stand_ins", "missing_module", "with_stand_ins"]
+__all__ = ["forget_stand_ins", "missing_module", "with_stand_ins"]
 
 T = TypeVar("T")
 
 MAX_MODULES: Final = 50
 """Number of modules of one process that may have stand-ins."""
-
-
-class StandIn(LaunchDescriptionEntity):
-    """An object that a launch file takes from a missing module, or creates with it.
-
-    It has every attribute and can be called, and is not a number, list or text; as text it is a
-    path that does not exist, so that code that cannot do without it names the missing module.
-    """
-
-    def __init__(self, name: str) -> None:
-        self.__name = name
-        frame = sys._getframe(1)  # where the launch file imported it
-        while frame.f_back is not None and frame.f_code.co_filename == __file__:
-            frame = frame.f_back
-        self._LaunchDescriptionEntity__where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
-
-    def visit(self, context: LaunchContext) -> NoReturn:  # noqa: ARG002  # as of other entities
-        """Refuse to be executed.
-
-        Raises:
-            PackageNotFoundError: Always.
-        """
-        raise PackageNotFoundError(package_of(self.__name), (), ())
-
-    def describe(self) -> str:
-        """Return the name that the launch file used."""
-        return self.__name
-
-    def __getattr__(self, name: str) -> StandIn:
-        if name.startswith("__") and name.endswith("__"):
-            raise AttributeError(name)  # a protocol that it does not implement
-        return StandIn(f"{self.__name}.{name}")
-
-    def __call__(self, *_: Any, **__: Any) -> StandIn:
-        return StandIn(f"{self.__name}()".replace("()()", "()"))
-
-    def __getitem__(self, key: Any) -> StandIn:
-        return self
-
-    def __iter__(self) -> Iterator[StandIn]:
-        return iter(())
-
-    def __mro_entries__(self, bases: tuple[Any, ...]) -> tuple[type, ...]:
-        name = self.__name
-
-        class Base(StandIn):
-            def __init__(self, *_: Any, **__: Any) -> None:
-                super().__init__(name)
-
-        return (Base,)
-
-    def __repr__(self) -> str:
-        return f"{stand_in(package_of(self.__name))}/{self.__name}"
-
-    __str__ = __fspath__ = __repr__
-
-    def __add__(self, other: Any) -> str:
-        return f"{self}{other}"
-
-    def __radd__(self, other: Any) -> str:
-        return f"{other}{self}"
 
 
 class StandInModule(ModuleType):
@@ -120,11 +57,6 @@ def forget_stand_ins() -> None:
     FINDER.packages.clear()
     for name in [name for name, module in sys.modules.items() if isinstance(module, StandInModule)]:
         del sys.modules[name]
-
-
-def package_of(name: str) -> str:
-    """Return the first part of the name of a module, or of an object in it."""
-    return name.partition(".")[0]
 
 
 def missing_module(error: BaseException) -> str | None:

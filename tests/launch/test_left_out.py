@@ -271,3 +271,48 @@ def generate_launch_description():
 """
     (log,) = records(files, text)
     assert log["log"].startswith("package 'nowhere' is not there; left out: twist_mux")
+
+
+@pytest.mark.parametrize(
+    "builder",
+    [
+        "MoveItConfigsBuilder('arm').trajectory_execution('a.yaml').to_moveit_configs()",
+        "ParameterBuilder('arm_moveit_config').yaml('a.yaml')",
+    ],
+)
+def test_a_node_is_left_out_whose_parameters_are_built_of_a_package_that_is_not_there(
+    files: Files, builder: str
+) -> None:
+    """The package is named, not the helper that looks for it."""
+    text = f"""
+from launch import LaunchDescription
+from launch_param_builder import ParameterBuilder
+from launch_ros.actions import Node
+from moveit_configs_utils import MoveItConfigsBuilder
+
+def generate_launch_description():
+    config = {builder}
+    return LaunchDescription([
+        Node(package="twist_mux", executable="twist_mux", parameters=[config.to_dict()]),
+        Node(package="twist_mux", executable="twist_mux"),
+    ])
+"""
+    log, started = records(files, text)
+
+    assert log["log"].startswith("package 'arm_moveit_config' is not there; left out: twist_mux")
+    assert "twist_mux" in started["argv"]
+
+
+def test_a_launch_file_that_is_made_of_a_package_that_is_not_there_starts_nothing(
+    files: Files,
+) -> None:
+    """As most of those in the package of a robot with MoveIt."""
+    text = """
+from moveit_configs_utils import MoveItConfigsBuilder
+from moveit_configs_utils.launches import generate_rsp_launch
+
+def generate_launch_description():
+    return generate_rsp_launch(MoveItConfigsBuilder("arm").to_moveit_configs())
+"""
+    (log,) = records(files, text)
+    assert log["log"].startswith("package 'arm_moveit_config' is not there; left out: robot_state")

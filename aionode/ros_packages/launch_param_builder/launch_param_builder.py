@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
+from aionode._packages import package_of_stand_in
+from launch.stand_in import StandIn
 from launch_param_builder.utils import (
     ParameterValueType,
     get_path,
@@ -18,7 +20,15 @@ __all__ = ["ParameterBuilder"]
 
 
 class ParameterBuilder:
-    """Parameters from the files of a package, added one after another."""
+    """Parameters from the files of a package, added one after another.
+
+    A package that is missing, and may be, has a stand-in: what is built of it is left out.
+    """
+
+    def __new__(cls, package_name: str, *_: Any, **__: Any) -> Any:
+        """Return a builder, or what stands for it."""
+        missing = package_of_stand_in(get_path(package_name, ""))
+        return super().__new__(cls) if missing is None else StandIn(missing)
 
     def __init__(self, package_name: str) -> None:
         self._package_path = Path(get_path(package_name, ""))

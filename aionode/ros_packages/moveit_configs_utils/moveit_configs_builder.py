@@ -81,6 +81,15 @@ class MoveItConfigsBuilder(ParameterBuilder):
         package_name: The package, which is ``ROBOT_NAME_moveit_config`` otherwise.
     """
 
+    def __new__(
+        cls,
+        robot_name: str,
+        robot_description: str = "robot_description",  # noqa: ARG004  # as of __init__
+        package_name: str | None = None,
+    ) -> Any:
+        """Return a builder, or what stands for it."""
+        return super().__new__(cls, package_name or f"{robot_name}_moveit_config")
+
     def __init__(
         self,
         robot_name: str,
