@@ -43,6 +43,12 @@ class Screen:
         return [json.loads(line) for line in self.text.splitlines()]
 
 
+@pytest.fixture(autouse=True)
+def quick_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The doctor looks twice at what processes do, a second apart; few tests are about that."""
+    monkeypatch.setattr("aionode.cli._nouns.doctor.work.LOOKING_S", 0.1)
+
+
 @pytest.fixture
 def screen() -> Screen:
     """Where the command under test prints to."""

@@ -402,7 +402,7 @@ def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
     assert status == 0
     assert "Nodes: 4\n" in text
     assert "none" in text
-    assert "0 problem(s), 0 hint(s)" in text
+    assert "0 problem(s)" in text  # a busy machine is worth a hint
 
 
 @pytest.mark.skipif(not available(), reason="links are of Linux")

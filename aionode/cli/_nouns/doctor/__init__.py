@@ -13,6 +13,7 @@ from aionode._distribution import other_distribution
 from aionode.cli._nouns.doctor.diagnosis import Finding, diagnose
 from aionode.cli._nouns.doctor.routes import link_findings, pairs_of, query_links
 from aionode.cli._nouns.doctor.transforms import transform_findings
+from aionode.cli._nouns.doctor.work import findings_of_work
 from aionode.cli._support import lookup
 from aionode.cli._support.completion import complete_names
 from aionode.cli._support.options import interfaces_option, json_option, ros2_options
@@ -46,7 +47,7 @@ ZENOH = "rmw_zenoh_cpp"
 @json_option
 @ros2_options
 def doctor_command(names: tuple[str, ...], transform: tuple[str, str] | None, json: bool) -> None:
-    """Summarize the network, and find out why endpoints do not communicate.
+    """Summarize the network, and find out why endpoints do not communicate, or are late.
 
     NAMES of nodes, topics and services restrict it to those, and show the route by which each
     publisher reaches each subscription. The exit status is 1 if a problem was found.
@@ -121,6 +122,8 @@ async def doctor(
         findings += network_findings(
             network, environ, has_router=has_router, domains=domains, alone=not nodes
         )
+    if not names:
+        findings += await findings_of_work(node)
     if not names or transform is not None or "/tf" in wanted:
         findings += await transform_findings(node, transform)
     for finding in findings:
