@@ -6,9 +6,9 @@
 #   make docs      the documentation as pages, in site/
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
 #   make coverage  how much of aionode is reached by tests that start no process, and by programs of rclpy
-#   make clean     removes what was made, .venv included
+#   make clean     removes everything generated, including .venv
 #
-# Experiments that take longer, for releases and for changes to what they test: make NAME runs one,
+# Experiments that take longer, for releases and for changes to the code they test: make NAME runs one,
 # and python3 -m tests.lab lists them.
 
 # The first of these that is Python 3.11 or newer. Use another one with make PYTHON=/path/to/python.
@@ -49,8 +49,8 @@ bench: .venv/installed-dev
 	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done
 
 # Lines are counted in the tests' own processes and in those that they start. Programs of rclpy run
-# in processes of their own, so the tests that start them count, too. Tests with time limits may fail
-# meanwhile: `make test` is what judges them, so only the share of the code counts.
+# in separate processes, so the tests that start them are included. Tests with time limits may fail
+# meanwhile: `make test` decides about them, so only the share of covered code matters here.
 coverage: .venv/installed-dev
 	-$(BIN)/python -m pytest -q -n $(WORKERS) \
 		-m "not checks and not processes and not faults and not stress and not second_loop" \
@@ -67,14 +67,14 @@ clean:
 	rm -rf .venv .fuzz .mcap-core .rosbridge-clients site benchmarks/results .coverage htmlcov
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .grimp_cache
 
-# Two steps, so that the first look at aionode does not wait for the tools of its developers.
+# Two steps, so that trying aionode out does not wait for the development tools.
 .venv/installed: pyproject.toml | .venv/bin/python
 	@echo "Installing aionode into .venv ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
 	@touch $@
 
 .venv/installed-dev: pyproject.toml | .venv/bin/python
-	@echo "Installing aionode and the tools of its developers into .venv ..."
+	@echo "Installing aionode and its development tools into .venv ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch .venv/installed $@
 

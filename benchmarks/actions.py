@@ -1,13 +1,12 @@
-"""How many goals a second an action takes between two processes, at first and with 1000 kept goals.
+"""How many goals per second an action handles between two processes, and with 1000 kept goals.
 
-One process serves `/fibonacci`, the other sends goals one after the other; each gives five feedback
-messages and a result. The server keeps all results, as it does for 10 s by default, so that the
-status messages of the second figure list 1000 goals. Beside it the same with rclpy, whose server
-and client run the same goals on its default executor, and its program unmodified on ``aionode
-run``. All take turns, each turn with new processes, so that whatever else the machine does falls
-on all of them.
+One process serves `/fibonacci`; the other sends goals one after another, each with five feedback
+messages and a result. The server keeps all results, as it does for 10 s by default, so the status
+messages of the second figure list 1000 goals. The same is measured with rclpy, whose server and
+client run on its default executor, and with its unmodified program on ``aionode run``. All take
+turns, with new processes each time, so that other load on the machine affects all of them.
 
-``CPU`` is the processor time of both processes for one goal: of use where the machine is shared.
+``CPU`` is the processor time of both processes per goal, which is useful on a shared machine.
 
 rclpy is that of the interpreter named by ``AIONODE_BENCH_RCLPY``, or else of this one
 (``pip install 'aionode[ros]'``). Run it with ``python benchmarks/actions.py``; it takes about half
@@ -99,7 +98,7 @@ async def serve() -> None:
 
 
 async def send() -> None:
-    """Send goals with aionode's client; each line of stdin says how many."""
+    """Send goals with aionode's client; each line of stdin gives their number."""
     from aionode import ActionClient, Node
     from aionode.interfaces.example_interfaces.action import Fibonacci
 
@@ -145,7 +144,7 @@ class Station:
         return json.loads(self._process.stdout.readline())
 
     def ask(self, count: int) -> float:
-        """Send so many goals, and return how many seconds it took."""
+        """Send a number of goals, and return how many seconds they took."""
         assert self._process.stdin is not None  # noqa: S101  # a pipe
         self._process.stdin.write(f"{count}\n")
         self._process.stdin.flush()

@@ -1,12 +1,13 @@
-"""Bags: the writer beside those of `mcap` and `rosbags`, and a recorder under load.
+"""Bags: the writer compared with those of `mcap` and `rosbags`, and a recorder under load.
 
     python benchmarks/bag.py writers
     python benchmarks/bag.py recorder --seconds 30
 
 Ratios are comparable between machines; absolute times are not. `recorder` compares, topic by topic,
-what was published with what is in the bag and what the recorder says was lost. It prints how much
-of a processor recording takes, the longest gap of the event loop beside that of the same publishers
-without a recorder, and how late a player of the bag publishes, each with a verdict.
+the published messages with those in the bag and with the losses that the recorder reports. It
+prints the share of a processor that recording takes, the longest stall of the event loop compared
+with that of the same publishers without a recorder, and how late a player of the bag publishes,
+each with a verdict.
 """
 
 from __future__ import annotations
@@ -103,7 +104,7 @@ def compare_writers() -> None:
 
 
 class Seen(NamedTuple):
-    """What was seen in one run.
+    """The measurements of one run.
 
     Attributes:
         sent: How many messages each topic was given.
@@ -119,12 +120,12 @@ class Seen(NamedTuple):
 
 
 def perf_s() -> float:
-    """Return the steady time in seconds, which uvloop's own clock has in whole milliseconds."""
+    """Return the steady time in seconds; uvloop's own clock only has whole milliseconds."""
     return perf_ns() / 1e9
 
 
 async def publish(seconds: float, *, image: bool, folder: Path | None) -> Seen:
-    """Publish for some seconds, with a recorder or without, and return what was seen."""
+    """Publish for some seconds, with or without a recorder, and return the measurements."""
     texts = [each.decode() for each in SMALL]
     picture = Image(data=LARGE)
     async with Context(transport="local") as context, Node("load", context=context) as node:
@@ -211,7 +212,7 @@ def measure_recorder(seconds: float) -> None:
 
 
 def measure_player(path: Path) -> None:
-    """Print how late a player publishes, beside a task that only sleeps."""
+    """Print how late a player publishes, compared with a task that only sleeps."""
     late, sleeper, count = run(play(path))
     player_ms, sleeper_ms = (p99(each) * 1e3 for each in (late, sleeper))
     verdict(
@@ -222,7 +223,7 @@ def measure_player(path: Path) -> None:
 
 
 async def play(path: Path) -> tuple[list[float], list[float], int]:
-    """Play a bag, and return how late its messages and the wake-ups of a sleeper were."""
+    """Play a bag, and return the lateness of its messages and of a sleeper's wake-ups."""
     late: list[float] = []
     sleeper: list[float] = []
     loop = asyncio.get_running_loop()
@@ -254,18 +255,18 @@ async def play(path: Path) -> tuple[list[float], list[float], int]:
 
 
 def p99(values: list[float]) -> float:
-    """Return what 99 of 100 values do not exceed."""
+    """Return the 99th percentile of some values."""
     return sorted(values)[int(len(values) * 0.99)]
 
 
 def run(work: Coroutine[None, None, T]) -> T:
-    """Run a coroutine in the event loop that `aionode.run` takes."""
+    """Run a coroutine in the event loop used by `aionode.run`."""
     with asyncio.Runner(loop_factory=best_loop_factory()) as runner:
         return runner.run(work)
 
 
 def main() -> None:
-    """Run what the command line names."""
+    """Run the command given by the arguments."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=["writers", "recorder"], nargs="?", default="writers")
     parser.add_argument("--seconds", type=float, default=30.0)

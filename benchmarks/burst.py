@@ -1,9 +1,9 @@
-"""How many small messages a second arrive from another process, against Zenoh alone.
+"""How many small messages per second arrive from another process, compared with Zenoh alone.
 
-One process sends bursts as fast as it can; this one counts what arrives in one callback on its
-event loop: with aionode (a `Node`, decoding, queue and statistics included) and with zenoh-python
-and one `call_soon_threadsafe` for each message. Both are measured in turns in the same run. The
-rate is that of arrival, from the first message of a burst to its last.
+One process sends bursts as fast as it can; this one counts those that arrive in one callback on its
+event loop: with aionode (a `Node`, including decoding, queue and statistics) and with zenoh-python
+and one `call_soon_threadsafe` per message. Both are measured in turns in the same run. The rate is
+that of arrival, from the first message of a burst to its last.
 
 Run it with ``python benchmarks/burst.py``. It prints a table and writes ``burst.json`` to
 ``benchmarks/results/``; ``--quick`` takes a fifth of the time, for a first look.
@@ -55,7 +55,7 @@ TYPE_KEY: Final = data_key(0, "/burst", "std_msgs/msg/String", type_hash(String)
 
 @dataclass(frozen=True)
 class Row:
-    """Messages a second of one kind on one loop, and how many of all arrived."""
+    """Messages per second of one kind on one loop, and how many of them arrived."""
 
     loop: str
     kind: str
@@ -65,7 +65,7 @@ class Row:
 
 
 class Counter:
-    """Counts messages, and knows when the last of a burst has come."""
+    """Counts messages, and detects the last one of a burst."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -80,7 +80,7 @@ class Counter:
         self.count += 1
 
     def reset(self) -> None:
-        """Begin the next burst."""
+        """Start the next burst."""
         self.count = 0
 
 
@@ -101,9 +101,10 @@ class RawReceiver(Counter):
 
 
 def send(port: int, key: str, payload: bytes, extra: bytes) -> None:
-    """Send one burst for each line on stdin, without an event loop in the way.
+    """Send one burst for each line on stdin, without an event loop.
 
-    The same for both kinds, so that only receiving differs. BLOCK, so that all is received.
+    The sender is the same for both kinds, so that only receiving differs. It uses BLOCK, so that
+    everything is received.
     """
     config = zenoh.Config()
     for path, value in {
@@ -127,7 +128,7 @@ def send(port: int, key: str, payload: bytes, extra: bytes) -> None:
 
 @contextmanager
 def sender(kind: str) -> Iterator[subprocess.Popen[str]]:
-    """Run the sending process of `kind` meanwhile."""
+    """Run the sending process of `kind` within the block."""
     with subprocess.Popen(  # noqa: S603  # this file
         [sys.executable, __file__, "--send", kind],
         stdin=subprocess.PIPE,
@@ -148,14 +149,14 @@ def line_of(process: subprocess.Popen[str]) -> str:
 
 
 async def burst(process: subprocess.Popen[str], receiver: Counter, count: int) -> float:
-    """Have one burst sent; return messages a second as they arrived."""
+    """Let a burst be sent; return the rate of arrival in messages per second."""
     receiver.reset()
     assert process.stdin is not None  # noqa: S101  # it is a pipe
     process.stdin.write(f"{count}\n")
     process.stdin.flush()
     await asyncio.to_thread(line_of, process)
     quiet = 0
-    while receiver.count < count and quiet < 20:  # half a second without news
+    while receiver.count < count and quiet < 20:  # half a second without messages
         before = receiver.count
         await asyncio.sleep(0.025)
         quiet = quiet + 1 if receiver.count == before else 0
@@ -181,7 +182,7 @@ async def measure(loop: str, count: int, rounds: int) -> list[Row]:
             for number in range(rounds + 1):
                 for kind, receiver in receivers.items():
                     rate = await burst(senders[kind], receiver, count)
-                    if number:  # the first is to warm up
+                    if number:  # the first one is for warming up
                         rates[kind].append(rate)
                         arrived[kind] += receiver.count
     session.close()

@@ -1,7 +1,7 @@
-"""How long the command line takes from the shell's point of view, and whether its rates are right.
+"""How long commands take from the shell's point of view, and whether their rates are right.
 
 ``aionode --help`` should answer in 250 ms and ``aionode topic list`` in 600 ms, both without a
-daemon that has everything ready. ``topic hz`` is compared with what the publisher itself counted.
+daemon that has everything ready. ``topic hz`` is compared with the publisher's own count.
 
 Run it with ``python benchmarks/cli.py``. It prints a table and writes ``cli.json`` to
 ``benchmarks/results/``; ``--quick`` measures less.
@@ -55,7 +55,7 @@ aionode.run(Talker)
 
 
 def quiet_environment() -> dict[str, str]:
-    """Return variables with which nothing else on the machine is heard."""
+    """Return variables that isolate a command from everything else on the machine."""
     made = [socket.socket() for _ in range(4)]
     for each in made:
         each.bind(("127.0.0.1", 0))
@@ -88,7 +88,7 @@ def start_times(env: dict[str, str], rounds: int) -> list[dict[str, Any]]:
 
 
 def rates(env: dict[str, str], seconds: int) -> list[dict[str, Any]]:
-    """Return what ``topic hz`` says of fast topics, and what was published in the same time."""
+    """Return the rates that ``topic hz`` prints for fast topics, and the actual numbers."""
     rows = []
     for wanted, tolerance in RATES_HZ.items():
         talker = subprocess.Popen(  # noqa: S603  # our own program
@@ -123,7 +123,7 @@ def rates(env: dict[str, str], seconds: int) -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    """Measure, print, and write the results down."""
+    """Measure, print, and store the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="measure less")
     quick = parser.parse_args().quick

@@ -1,9 +1,9 @@
-"""How fast messages become bytes and bytes become messages, beside rosbags in the same run.
+"""How fast messages are encoded and decoded, compared with rosbags in the same run.
 
-For each message the four ways are taken in turn, many times over, and of each the fastest turn
-counts: what else the machine does only ever makes a turn slower. Ratios compare within one run;
-times say as much about the machine. The largest rows also say where the bytes of a decoded array
-are: in the data (a view), or in memory of their own (a copy).
+For each message the four ways take turns many times, and the fastest turn of each counts: other
+load only ever makes a turn slower. Ratios compare within one run; times depend on the machine. The
+largest rows also say where the bytes of a decoded array are stored: in the data (a view), or in
+separate memory (a copy).
 
 Run it with ``python benchmarks/codec.py``. It prints a table and writes ``codec.json`` to
 ``benchmarks/results/``; ``--quick`` takes a tenth of the time, for a first look.
@@ -84,12 +84,12 @@ class Row:
 
 
 def header(number: int = 0) -> Header:
-    """Return a header as a driver makes them."""
+    """Return a header as drivers create it."""
     return Header(stamp=Time(sec=1_700_000_000, nanosec=number), frame_id="base_link")
 
 
 def subjects() -> dict[str, list[Message]]:
-    """Return what is measured: messages that take turns, by the name of their row."""
+    """Return the messages to measure, by the name of their row."""
     rng = np.random.default_rng(1)
     covariance = rng.random(9)
     joints = [f"joint_{number}" for number in range(7)]

@@ -1,8 +1,8 @@
-"""What the gateway costs beside a bare broadcast of the same bytes by `websockets`.
+"""What the gateway costs compared with a bare broadcast of the same bytes by `websockets`.
 
-``python benchmarks/gateway.py`` prints, for each kind of frame, the processor time of one message
-to all clients, and the messages that one core can send a second. The clients are in a process of
-their own; what they were too slow for is in the last column.
+``python benchmarks/gateway.py`` prints, for each kind of frame, the processor time of sending one
+message to all clients, and the number of messages that one core can send per second. The clients
+run in a separate process; the last column shows what they were too slow for.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ READER = Path(__file__).parent / "gateway_parts" / "reader.py"
 
 
 class Case(NamedTuple):
-    """What is sent.
+    """A kind of message to send.
 
     Attributes:
         name: For the table.
@@ -54,7 +54,7 @@ class Case(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """What a message costs.
+    """The cost of a message.
 
     Attributes:
         seconds: Processor time of the server for one message to all clients.
@@ -76,7 +76,7 @@ CASES = [
 
 
 async def measure(port: int, clients: int, case: Case, send: Callable[[], Awaitable[None]]) -> Cost:
-    """Return what the messages cost this process."""
+    """Return the cost of the messages in this process."""
     options = {
         "port": port, "clients": clients, "count": case.number, "wait_sec": 3.0,
         "subscribe": subscription(case),
@@ -110,7 +110,7 @@ async def gateway(case: Case) -> AsyncIterator[tuple[Gateway, Any]]:
 
 
 def subscription(case: Case) -> dict[str, Any]:
-    """Return the op that subscribes."""
+    """Return the subscribe op."""
     return {
         "op": "subscribe", "topic": TOPIC, "compression": case.compression, "queue_length": 100,
     }  # fmt: skip
@@ -134,7 +134,7 @@ async def frame_of(case: Case) -> bytes | str:
 
 
 async def measure_gateway(case: Case, clients: int) -> Cost:
-    """Return what a message costs the gateway."""
+    """Return the cost of a message in the gateway."""
     async with gateway(case) as (found, publisher):
 
         async def send() -> None:
@@ -144,7 +144,7 @@ async def measure_gateway(case: Case, clients: int) -> Cost:
 
 
 async def measure_bare(case: Case, clients: int, frame: bytes | str) -> Cost:
-    """Return what a message costs a broadcast."""
+    """Return the cost of a message in a broadcast."""
     connected: set[ServerConnection] = set()
 
     async def handle(socket: ServerConnection) -> None:
@@ -161,7 +161,7 @@ async def measure_bare(case: Case, clients: int, frame: bytes | str) -> Cost:
 
 
 async def main(clients: int, repeats: int, only: str) -> None:
-    """Measure both in turns; print the medians of each, and of the ratios of neighbours."""
+    """Measure both in turns; print their medians, and those of the ratios of neighbouring turns."""
     print(f"{clients} clients; processor time of the server for one message to all of them")
     print(
         f"{'frame':30} {'bare':>10} {'gateway':>10} {'ratio':>6} {'messages/s of a core':>21} lost"

@@ -1,8 +1,9 @@
-"""What processes cost that have nothing to do: processor, wake-ups, threads and memory.
+"""What idle processes cost: processor time, wake-ups, threads and memory.
 
-Each process has one node with one subscription, and hears nothing. They are measured alone, beside
-busy programs of another domain, and while another process starts and ends: in their own domain, and
-in another one. Bare Zenoh sessions, which are connected as aionode's are, and rclpy stand beside.
+Each process has one node with one subscription, and receives nothing. They are measured alone,
+beside busy programs of another domain, and while another process starts and ends, in their own
+domain and in another one. Bare Zenoh sessions, connected like aionode's, and rclpy are measured for
+comparison.
 
 Run it with ``python benchmarks/idle.py``. It prints a table, writes ``idle.json`` and ``idle.png``
 to ``benchmarks/results/``, and with ``--write docs/performance.md`` brings the page and the picture
@@ -31,13 +32,13 @@ from roundtrip import machine  # type: ignore[import-not-found]  # beside this f
 RESULTS: Final = Path(__file__).parent / "results"
 CROWDS: Final = (3, 12, 20, 100)
 BUSY: Final = (3, 20)
-"""How many idle processes there are beside busy ones of another domain."""
+"""The number of idle processes beside busy ones of another domain."""
 SETTLE_S: Final = 15.0
-"""Time from the last start until the first look."""
+"""Time from the last start until the first measurement."""
 STARTS: Final = 5
-"""How many processes start and end while the others are looked at."""
+"""How many processes start and end while the others are measured."""
 WINDOW_S: Final = 4.0
-"""Time in which a process starts and ends, and the others have nothing left to do with it."""
+"""Time for a process to start and end, and for the others to finish reacting."""
 BEGIN: Final = "<!-- idle.py: begin -->"
 END: Final = "<!-- idle.py: end -->"
 
@@ -106,7 +107,7 @@ PROGRAMS: Final = {"aionode": AIONODE, "bare Zenoh": ZENOH, "rclpy": RCLPY}
 
 
 class Look(NamedTuple):
-    """What the system says of processes at a moment, in sum.
+    """The system's counters of processes at one moment, summed up.
 
     Attributes:
         run_ns: Processor time of their threads.
@@ -118,7 +119,7 @@ class Look(NamedTuple):
 
 
 class Row(NamedTuple):
-    """What one process of a crowd cost.
+    """The cost of one process of a crowd.
 
     Attributes:
         core: Share of a core, in percent.
@@ -185,7 +186,7 @@ def stop(processes: list[subprocess.Popen[str]]) -> None:
 
 @contextmanager
 def crowd(peer: str, count: int, domain_id: int) -> Iterator[list[int]]:
-    """Run idle processes of a peer; their ids."""
+    """Run idle processes of a peer; yield their ids."""
     processes: list[subprocess.Popen[str]] = []
     try:
         for number in range(count):
@@ -199,7 +200,7 @@ def crowd(peer: str, count: int, domain_id: int) -> Iterator[list[int]]:
 
 @contextmanager
 def busy(domain_id: int) -> Iterator[None]:
-    """Run busy programs of a domain: three talk, and another starts and ends all the time."""
+    """Run busy programs of a domain: three communicate, another keeps starting and ending."""
     done = threading.Event()
 
     def churn() -> None:
@@ -218,7 +219,7 @@ def busy(domain_id: int) -> Iterator[None]:
 
 
 def measured(pids: list[int], seconds: float) -> Row:
-    """Look at processes for some time."""
+    """Measure processes for some time."""
     before, began = look(pids), time.monotonic()
     time.sleep(seconds)
     after, took_s = look(pids), time.monotonic() - began
@@ -241,9 +242,9 @@ def measured(pids: list[int], seconds: float) -> Row:
 
 
 def prices_ms(peer: str, pids: list[int], domains: dict[str, int]) -> dict[str, float]:
-    """Return what the start and the end of a process cost each of a crowd, in ms of processor.
+    """Return what starting and ending a process costs each of a crowd, in ms of processor time.
 
-    Windows in which one starts in each of the domains, and in which none does, take turns.
+    Periods in which one starts in each of the domains, and in which none does, take turns.
     """
     spent: dict[str, list[float]] = {name: [] for name in ("", *domains)}
     for number in range(STARTS):
@@ -288,7 +289,7 @@ def table(rows: dict[str, dict[str, Row]]) -> list[str]:
 
 
 def draw(rows: dict[str, dict[str, Row]], path: Path) -> None:
-    """Draw processor and wake-ups over the number of processes."""
+    """Plot processor time and wake-ups over the number of processes."""
     import matplotlib as mpl
 
     mpl.use("Agg")

@@ -1,15 +1,15 @@
-"""How many instructions and cache lines one message takes: what a busy machine leaves alone.
+"""How many instructions and cache lines one message takes, independent of other load.
 
-Times differ from hour to hour; these hardly differ from run to run, so that a change that makes
-messages dearer shows. Each case runs under valgrind's simulated processor, once with 64 and once
-with 128 messages: the difference is what 64 messages take. Before each message all caches are
-emptied, as they are at 100 Hz, where fetching memory is most of a message's time; what is counted
-then is how many lines of 64 bytes a message touches, of code and of data. What a bare event loop
-takes for the same turns is subtracted.
+Times differ from hour to hour; these counts hardly differ from run to run, so a change that makes
+messages more expensive shows. Each case runs under valgrind's simulated processor, once with 64 and
+once with 128 messages: the difference is the cost of 64 messages. Before each message all caches
+are emptied, as they are at 100 Hz, where fetching memory takes most of a message's time; the number
+of 64-byte lines of code and data that a message touches is then counted. The cost of a bare event
+loop for the same iterations is subtracted.
 
-Everything is in one process, so that sending and receiving can be told apart, on the event loop of
-asyncio. Zenoh's rows are aionode's Python up to Zenoh's `put`, and from the queue that Zenoh's
-threads fill.
+Everything runs in one process, on asyncio's event loop, so that sending and receiving can be
+distinguished. Zenoh's rows are aionode's Python code up to Zenoh's `put`, and from the queue that
+Zenoh's threads fill.
 
 Run it with ``make profile``, or ``python benchmarks/instructions.py``; it takes a minute or two
 and needs valgrind (``apt install valgrind``). It prints a table, writes ``instructions.json`` to
@@ -38,24 +38,24 @@ MESSAGES: Final = 64  # as many as are recorded, and confirmed, at once
 BEGIN: Final = "<!-- instructions: made by benchmarks/instructions.py -->\n"
 END: Final = "<!-- end of instructions -->\n"
 
-# The first level has next to nothing, so that the last level sees each line that is touched, and
-# keeps it until all caches are emptied.
+# The first level is almost empty, so that the last level sees each line that is touched, and keeps
+# it until all caches are emptied.
 CACHES: Final = ("--I1=128,1,64", "--D1=128,1,64", "--LL=1048576,16,64")
 
 
 def play(folder: str, only: str) -> None:
-    """Run each case in forked processes of its own: their counts begin where this one's are."""
+    """Run each case in its own forked process: the counts begin where this one's are."""
     from benchmarks.instruction_parts.cases import CASES
 
     for number, name in enumerate(CASES):
         for times in (1, 2) if not number or only in name else ():
-            # On a very busy machine a timer may be so late that it leaves out a tick.
+            # On a very busy machine a timer may be so late that it skips a tick.
             if not any(is_complete(folder, number, times) for _ in range(TRIES)):
                 raise SystemExit(f"{name}: not every message has arrived once")
 
 
 def is_complete(folder: str, number: int, times: int) -> bool:
-    """Run a case in a process of its own; return whether each message has arrived once."""
+    """Run a case in its own process; return whether each message arrived once."""
     from benchmarks.instruction_parts.cases import CASES, calibrate
 
     child = os.fork()
@@ -70,7 +70,7 @@ def is_complete(folder: str, number: int, times: int) -> bool:
 
 
 def counts(folder: Path) -> dict[tuple[int, int], dict[str, int]]:
-    """Return what valgrind has counted, by case and run."""
+    """Return valgrind's counts, by case and run."""
     found = {}
     for case in folder.glob("*.case"):
         number, times = map(int, case.read_text().split())
@@ -132,7 +132,7 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 
 def write(page: Path, text: str) -> None:
-    """Put the table into the page, between its two marks."""
+    """Write the table into the page, between its two markers."""
     before, rest = page.read_text().split(BEGIN)
     after = rest.split(END)[1]
     page.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")

@@ -1,4 +1,4 @@
-"""What a link between two processes of one host costs, beside its floors in the same run.
+"""What a link between two processes of one host costs, compared with its lower bounds.
 
 Everything goes from this process to another one and back, in slices that take turns, so that a
 noisy minute hits all rows alike: as fast as it goes ("full rate"), and with a sleep of 10 ms before
@@ -196,7 +196,7 @@ async def measure(place: Run, plan: Plan) -> dict[str, list[dict[str, Any]]]:
 
 
 async def caller(node: Node) -> Caller:
-    """Return what calls a service."""
+    """Return a function that calls a service."""
     client = node.create_client(AddTwoInts, "add")
     await client.wait_for_service()
     return Caller(lambda: client.call(AddTwoInts.Request(a=1, b=2)))
@@ -237,7 +237,7 @@ async def burst_in_turns(
 
 
 def loop_factory(name: str) -> Callable[[], asyncio.AbstractEventLoop] | None:
-    """Return what makes the event loop called `name`."""
+    """Return the factory of the event loop called `name`."""
     if name != "uvloop":
         return None
     import uvloop
@@ -258,7 +258,7 @@ def run(loop: str, work: Awaitable[Any], limit_s: float | None = None) -> Any:
 
 
 def placements() -> list[tuple[int, ...]]:
-    """Return where the two processes run: on a core each, on one core, or anywhere if need be."""
+    """Return where the two processes run: on one core each, on one, or anywhere if necessary."""
     if not hasattr(os, "sched_setaffinity"):
         return [()]
     cores = sorted(os.sched_getaffinity(0))
@@ -266,9 +266,9 @@ def placements() -> list[tuple[int, ...]]:
 
 
 def part_of(args: argparse.Namespace) -> None:
-    """Do what another process of this program is for."""
+    """Run the part of another process of this program."""
     cores = tuple(int(core) for core in args.cores.split(",") if core)
-    if cores:  # before there are threads, which do the same
+    if cores:  # before there are threads, which inherit it
         os.sched_setaffinity(0, {cores[args.part in OTHERS]})
     place = Run(args.folder, args.loop, args.port, cores)
     if args.part.startswith("rclpy"):
@@ -281,7 +281,7 @@ def part_of(args: argparse.Namespace) -> None:
 
 
 def tables_of(args: argparse.Namespace, loop: str, cores: tuple[int, ...]) -> dict[str, list[Any]]:
-    """Measure in a process of its own, and return its tables."""
+    """Measure in a separate process, and return its tables."""
     buffer = "/dev/shm" if Path("/dev/shm").is_dir() else None  # noqa: S108  # memory, not a file
     with tempfile.TemporaryDirectory(dir=buffer) as folder:
         command = [
@@ -310,7 +310,7 @@ def main() -> None:
     )
     for hidden in ("--part", "--folder", "--kind", "--cores"):
         parser.add_argument(hidden, default="", help=argparse.SUPPRESS)
-    # Below the ports that the system gives away, and seldom those of another run beside this one.
+    # Below the ports that the system assigns, and seldom those of a concurrent run.
     port = 18_600 + os.getpid() % 600 * 20
     parser.add_argument("--port", type=int, default=port, help=argparse.SUPPRESS)
     args = parser.parse_args()

@@ -1,14 +1,14 @@
-"""From which size on a payload should go over shared memory, and what that costs.
+"""The size from which a payload should use shared memory, and what that costs.
 
-Two processes send each other images over a Unix socket, in turns by two ways: all bytes through
-the socket, encoded into one piece and read by `FrameParser`; or copied into memory that both have
-mapped, with a frame that only says where. Both processes run an asyncio loop and read and write
-as a link does, with nothing else of it. The receiver decodes each image and reads all of it in
-place, which takes its time too.
+Two processes send each other images over a Unix socket, alternating between two ways: all bytes
+through the socket, encoded into one piece and read by `FrameParser`; or copied into memory mapped
+by both, with a frame that only refers to it. Both processes run an asyncio loop and read and write
+like a link, and do nothing else. The receiver decodes each image and reads all of it in place,
+which takes time too.
 
-The table gives half a round trip for each size, and the size from which on memory is cheaper:
-`SHARED_FROM` in ``aionode/engine/transport/link/_shared_memory.py``. Then, for 4 MB, the cost of
-each step.
+The table gives half a round trip for each size, and the size from which memory is cheaper:
+`SHARED_FROM` in ``aionode/engine/transport/link/_shared_memory.py``. After it comes the cost of
+each step for 4 MB.
 
 Run it with ``python benchmarks/ipc_shared_memory.py``; ``--quick`` takes a fifth of the time. It
 prints the table and writes ``link_memory.json`` to ``benchmarks/results/``.
@@ -51,8 +51,9 @@ if TYPE_CHECKING:
 SIZES: Final = [1 << exponent for exponent in range(12, 21)]
 LARGE: Final = 4_000_000
 WARM_UP: Final = 20
-TURN: Final = 3  # the last counts, as the first find the memory of the other way in the caches
-READ_BYTES: Final = 1 << 15  # as a link reads
+# only the last ones count, because the first find the memory of the other way in the caches
+TURN: Final = 3
+READ_BYTES: Final = 1 << 15  # like a link's reads
 READ_MAX: Final = 1 << 20
 GID: Final = bytes(protocol.GID_SIZE)
 RESULTS: Final = Path(__file__).parent / "results"
@@ -63,7 +64,7 @@ DECODE: Final = cdr.decoder(Image)
 
 
 class End:
-    """One end of the socket, which sends and receives images by either way.
+    """One end of the socket, which sends and receives images in either way.
 
     Args:
         sock: Connected.
@@ -125,7 +126,7 @@ class End:
         self.step("send")
 
     def _send_rest(self) -> bool:
-        """Send what the socket takes; return whether that was all."""
+        """Send as much as the socket accepts; return whether that was all."""
         with suppress(BlockingIOError):
             self._rest = self._rest[self._sock.send(self._rest) :]
         return not self._rest
@@ -152,7 +153,7 @@ class End:
             self._on_image(size, one.in_shm)
 
     def _read(self, one: protocol.Frame, ancillary: Any) -> int:
-        """Decode an image, read all of its data, and return how much that is."""
+        """Decode an image, read all of its data, and return its size."""
         if not one.in_shm:
             data = DECODE(one.payload).data
             np.frombuffer(data, np.uint64).max()
@@ -170,12 +171,12 @@ class End:
 
 
 def image_of(size: int) -> Image:
-    """Return an image whose pixels take so many bytes."""
+    """Return an image whose pixels take a number of bytes."""
     return Image(height=1, width=size, step=size, data=bytes([1]) * size)
 
 
 async def echo(fd: int) -> None:
-    """Send back images of the size and by the way that they come, until the socket is closed."""
+    """Send back images in the size and way they arrive, until the socket is closed."""
     sizes = {size: image_of(size) for size in (*SIZES, LARGE)}
     end = End(socket.socket(fileno=fd), lambda size, shared: end.send(sizes[size], shared=shared))
     await end.closed
@@ -203,7 +204,7 @@ def other_process() -> Iterator[socket.socket]:
 
 
 async def measure(scale: int) -> dict[str, Any]:
-    """Return the table, the crossing, and the steps."""
+    """Return the table, the crossover size, and the steps."""
     rows: list[dict[str, Any]] = []
     answers = asyncio.Event()
     with other_process() as sock:

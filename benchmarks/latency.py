@@ -1,7 +1,7 @@
-"""How long a message takes from publish to callback in one process, and how many pass a second.
+"""How long a message takes from publish to callback in one process, and how many pass per second.
 
-Each row is measured beside a bare ``asyncio.Queue`` hop at the same rate, in the same run: what one
-`put_nowait` and one awaiting `get` take is the least that any node on asyncio could reach. The
+Each row is compared with a bare ``asyncio.Queue`` hop at the same rate, in the same run: the time
+of one `put_nowait` and one awaiting `get` is the least that any node on asyncio could reach. The
 guidance for robots is 10 ms from a message to the end of its callback.
 
 Run it with ``python benchmarks/latency.py``. It prints a table and writes ``latency.json`` and
@@ -46,7 +46,7 @@ PERCENTILES: Final = (50, 90, 99)
 
 @dataclass(frozen=True)
 class Latency:
-    """One row: what was sent how often, and how long it took, in nanoseconds."""
+    """One row: the payload, the rate, and the latencies in nanoseconds."""
 
     loop: str
     rate_hz: int
@@ -61,7 +61,7 @@ class Latency:
 
 @dataclass(frozen=True)
 class Throughput:
-    """One row: messages a second from one publisher to one plain function."""
+    """One row: messages per second from one publisher to one plain function."""
 
     loop: str
     what: str
@@ -73,7 +73,7 @@ Samples = dict[tuple[str, int, str], list[int]]
 
 
 def payloads() -> dict[str, Message]:
-    """Return the messages that are sent, by what the table calls them."""
+    """Return the messages to send, by their names in the table."""
     return {
         "String 16 B": String(data="x" * 16),
         "String 1 KiB": String(data="x" * 1024),
@@ -83,7 +83,7 @@ def payloads() -> dict[str, Message]:
 
 
 async def paced(rate_hz: int, count: int, send: Callable[[], None]) -> None:
-    """Call `send` `count` times at `rate_hz`; what is due together is sent together."""
+    """Call `send` `count` times at `rate_hz`; calls that are due together are made together."""
     loop = asyncio.get_running_loop()
     start = loop.time()
     for index in range(count):
@@ -120,7 +120,7 @@ async def node_hop(rate_hz: int, count: int, msg: Message) -> list[int]:
         if len(samples) == count:
             done.set()
 
-    # Where the machine stands still for a while, everything waits, and nothing is dropped.
+    # If the machine stalls for a while, everything waits, and nothing is dropped.
     context = Context(transport="local", queue_bytes=count * 2**21)
     async with Node("writer", context=context) as writer, Node("reader", context=context) as reader:
         reader.create_subscription(type(msg), "/bench", callback, count)
@@ -136,7 +136,7 @@ async def node_hop(rate_hz: int, count: int, msg: Message) -> list[int]:
 
 
 async def measure_latency(loop: str, seconds: float, samples: Samples) -> None:
-    """Add the samples of every rate and payload, the queue's between those of aionode."""
+    """Add the samples of every rate and payload, alternating between queue and aionode."""
     for rate_hz in RATES_HZ:
         count = max(20, int(rate_hz * seconds / ROUNDS))
         for _ in range(ROUNDS):
@@ -148,13 +148,13 @@ async def measure_latency(loop: str, seconds: float, samples: Samples) -> None:
 async def collect(
     samples: Samples, key: tuple[str, int, str], measurement: Awaitable[list[int]]
 ) -> None:
-    """Add what one measurement gives, with the garbage of the one before out of its way."""
+    """Add the results of one measurement, after collecting the garbage of the previous one."""
     gc.collect()
     samples.setdefault(key, []).extend(await measurement)
 
 
 async def queue_throughput(messages: int) -> float:
-    """Return how many items a second pass a bare queue to one awaiting reader."""
+    """Return how many items per second pass through a bare queue to one awaiting reader."""
     queue: asyncio.Queue[int] = asyncio.Queue(2 * THROUGHPUT_BATCH)
 
     async def read() -> None:
@@ -170,7 +170,7 @@ async def queue_throughput(messages: int) -> float:
 
 
 async def node_throughput(messages: int) -> float:
-    """Return how many messages a second pass from one publisher to one plain function."""
+    """Return how many messages per second pass from one publisher to one plain function."""
     msg = String(data="x" * 16)
     received = 0
     done = asyncio.Event()
@@ -226,7 +226,7 @@ def summarized(samples: Samples) -> list[Latency]:
 
 
 def loops() -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
-    """Return what makes each event loop that is installed."""
+    """Return the factory of each installed event loop."""
     found: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {"asyncio": asyncio.new_event_loop}
     try:
         import uvloop
@@ -286,7 +286,7 @@ def print_tables(latencies: list[Latency], throughputs: list[Throughput]) -> Non
 
 
 def draw(samples: Samples, path: Path) -> None:
-    """Draw the distributions: how many of a thousand messages took longer than what."""
+    """Plot the distributions: how many of a thousand messages took longer than a time."""
     import matplotlib as mpl
 
     mpl.use("Agg")

@@ -1,11 +1,11 @@
 """How much code each room of aionode has: lines by package, now and in an earlier commit.
 
-Rooms are those of docs/design.md: a package or module of ``aionode/``, and each transport by
-itself, as is the protocol of bridges to DDS inside that of Zenoh. What ``aionode/rclpy`` has
-besides rclpy, such as tf2, is counted apart. Generated interfaces are left out, and so are tests
-and documentation. A line counts whatever is in it, so that denser lines save nothing unseen: the
-columns say what is code, what is text (docstrings and comments), and what only passes names on,
-which is each ``__all__`` and each module that has nothing but imports.
+Rooms are those of docs/design.md: a package or module of ``aionode/``, and each transport
+separately, as well as the protocol of bridges to DDS within that of Zenoh. Additions in
+``aionode/rclpy`` to rclpy itself, such as tf2, are counted separately. Generated interfaces, tests
+and documentation are left out. Every line counts, so that denser lines do not hide anything: the
+columns distinguish code, text (docstrings and comments), and lines that only pass names on, which
+are each ``__all__`` and each module that consists of imports.
 
 Run it with ``python benchmarks/lines.py``. ``--since COMMIT`` adds the lines of a commit and the
 difference, ``--room rclpy`` lists the modules of one room.
@@ -32,7 +32,7 @@ DIVIDED: Final = ("engine",)
 """Packages whose parts are rooms of their own."""
 
 INNER_ROOMS: Final = ("engine/transport/zenoh/bridge",)
-"""Packages that are rooms of their own inside another: a protocol each."""
+"""Packages within others that are rooms of their own: one protocol each."""
 
 BESIDE_RCLPY: Final = {
     "other packages": (
@@ -60,12 +60,12 @@ BESIDE_RCLPY: Final = {
         "_workspace",
     ),
 }
-"""What ``aionode/rclpy`` has besides the modules of rclpy: how the paths in it begin."""
+"""Additions in ``aionode/rclpy`` to rclpy's modules: the beginnings of their paths."""
 
 
 @dataclass
 class Count:
-    """What a module, or all modules of a room, have.
+    """The numbers of lines in a module, or in all modules of a room.
 
     Attributes:
         modules: How many files.
@@ -88,7 +88,7 @@ class Count:
 
 
 def count(source: str) -> Count:
-    """Return what one module has."""
+    """Return the counts of one module."""
     tree = ast.parse(source)
     code = code_lines(source)
     text = docstring_lines(tree) & code
@@ -168,7 +168,7 @@ def modules_of(commit: str) -> Iterator[tuple[str, str]]:
 
 
 def is_generated(path: str) -> bool:
-    """Return whether a module is made from the standard definitions."""
+    """Return whether a module is generated from the standard definitions."""
     parts = path.split("/")
     return parts[1] == "interfaces" and len(parts) > 3
 
@@ -189,7 +189,7 @@ def room_of(path: str) -> str:
 
 
 def rooms(modules: Iterable[tuple[str, str]], only: str | None) -> dict[str, Count]:
-    """Return what each room has; with `only`, what each module of that room has."""
+    """Return the counts of each room; with `only`, of each module in that room."""
     found: dict[str, Count] = defaultdict(Count)
     for path, source in modules:
         room = room_of(path)
@@ -212,7 +212,7 @@ def show(now: dict[str, Count], before: dict[str, Count] | None) -> None:
 
 
 def row(name: str, width: int, now: Iterable[Count], before: Iterable[Count] | None) -> str:
-    """Return one row: what several counts have in all."""
+    """Return one row: the sums of several counts."""
     has = sum(now, Count())
     text = f"{name:{width}}  {has.modules:7}{has.lines:8}{has.code:8}{has.text:8}{has.names:8}"
     if before is None:

@@ -1,9 +1,9 @@
-"""aionode beside its peers, in one table: what else carries messages between programs in Python.
+"""aionode and its peers in one table: the other ways to pass messages between Python programs.
 
-Each peer has two processes, and all peers take turns in each column, so that a noisy minute hits
-them alike. What is shown is the median of the rounds, and in the picture its ratio to aionode's
-link. A peer whose modules are not installed is skipped with its reason, and so is what a peer
-has no word for, such as service calls.
+Each peer has two processes, and all peers take turns in each column, so that other load affects
+them alike. The table shows the median of the rounds, and the picture its ratio to aionode's link. A
+peer whose modules are not installed is skipped with its reason, as are features that a peer does
+not have, such as service calls.
 
 - Round trip: 23 characters to the other process and back, as fast as it goes ("tight"), and with
   10 ms of rest before each ("100 Hz"). In process: one hop there and one back.
@@ -97,7 +97,7 @@ class Process:
         self._text = b""
 
     def answer(self, limit_s: float = LIMIT_S) -> Any:
-        """Return the next line of JSON; what else a library prints is passed over."""
+        """Return the next line of JSON, ignoring other lines that a library prints."""
         ends = time.monotonic() + limit_s
         while time.monotonic() < ends:
             line, found, rest = self._text.partition(b"\n")
@@ -123,7 +123,7 @@ class Process:
         return self.answer()
 
     def send(self, line: str) -> None:
-        """Ask, and do not wait."""
+        """Send a question without waiting."""
         assert self._process.stdin is not None  # noqa: S101  # a pipe
         self._process.stdin.write(line.encode() + b"\n")
         self._process.stdin.flush()
@@ -181,7 +181,7 @@ class Pair:
         return found if found is None or not size else found / 1e3
 
     def calls(self, count: int) -> float | None:
-        """Return how many service calls a second are answered."""
+        """Return how many service calls per second are answered."""
         found: float | None = None if self.alone else self.ping.ask(f"calls {count}")
         return found
 
@@ -199,7 +199,7 @@ class Pair:
         return sender, receiver
 
     def first_ms(self) -> float | None:
-        """Return how long a new process takes to hear its first message."""
+        """Return how long a new process takes to receive its first message."""
         if self.alone or self.name in (
             "bare Unix socket",
             "zenoh-python",
@@ -264,7 +264,7 @@ class Comparison:
             except subprocess.CalledProcessError as reason:
                 self.skipped[f"{pair.name}: {columns}"] = str(reason)
                 continue
-            except (SilentError, OSError) as reason:  # it cannot go on
+            except (SilentError, OSError) as reason:  # it cannot continue
                 self.skipped[f"{pair.name}: from {columns} on"] = str(reason)
                 pair.end()
                 self._pairs.remove(pair)
@@ -322,7 +322,7 @@ def table(rows: dict[str, dict[str, float]]) -> str:
 
 
 def picture(tables: dict[str, dict[str, dict[str, float]]], path: Path) -> None:
-    """Draw how much longer each peer takes than aionode's link, for round trips."""
+    """Plot how much longer each peer takes than aionode's link, for round trips."""
     import matplotlib as mpl
 
     mpl.use("Agg")
@@ -346,7 +346,7 @@ def picture(tables: dict[str, dict[str, dict[str, float]]], path: Path) -> None:
 
 
 def write(page: Path, text: str) -> None:
-    """Put the tables into the page, between its two marks, and the picture beside it."""
+    """Write the tables into the page, between its two markers, and the picture beside it."""
     before, rest = page.read_text().split(BEGIN)
     page.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
     shutil.copy(RESULTS / "peers.png", page.parent / "peers.png")
@@ -355,7 +355,7 @@ def write(page: Path, text: str) -> None:
 def text_of(
     tables: dict[str, dict[str, dict[str, float]]], skipped: dict[str, str], how: str
 ) -> str:
-    """Return the part of the page."""
+    """Return the text for the page."""
     parts = [f"{how}\n", "![Round trips of each peer, times that of aionode's link](peers.png)\n"]
     for loop, rows in tables.items():
         parts += [f"On {loop}:\n", table(rows)]
@@ -387,7 +387,7 @@ def main() -> None:
             comparison = Comparison(loop, folder)
             try:
                 comparison.measure(rounds, count)
-            except KeyboardInterrupt:  # what was measured by then is shown
+            except KeyboardInterrupt:  # results measured by then are shown
                 comparison.skipped["the rest"] = "interrupted"
             finally:
                 comparison.end()

@@ -1,11 +1,11 @@
 """Round trips over DDS: aionode with ``transport="rcl"``, and rclpy with its two executors.
 
 The same message (String, 16 bytes) goes to an echo in another process and back. All processes run
-all the time, and are measured in turns of a fraction of a second, so that whatever else the machine
-does falls on all of them. With ``--stress``, messages go in both directions as fast as they are
-read: nothing may be lost, and the loop must not stall. Both take a minute and a half:
-``python benchmarks/rcl.py --seconds 60``, ``python benchmarks/rcl.py --stress --seconds 60``.
-Needs an rclpy: ``pip install 'aionode[ros]'``, or a ROS 2 that is sourced.
+all the time and are measured in turns of a fraction of a second, so that other load affects all of
+them. With ``--stress``, messages go in both directions as fast as they are read: nothing may be
+lost, and the loop must not stall. Both take a minute and a half: ``python benchmarks/rcl.py
+--seconds 60``, ``python benchmarks/rcl.py --stress --seconds 60``. They need an rclpy: ``pip
+install 'aionode[ros]'``, or a sourced ROS 2.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ KINDS = ("rclpy-events", "aionode", "aionode-uvloop", "rclpy-default")
 PLAN = (("tight", 100, 0.0), ("100Hz", 20, 0.01))  # name, round trips, pause in seconds
 TEXT = "0123456789abcdef"
 FIRST_S = 0.2  # after which the first message is sent again
-LIMIT_S = 180.0  # of one turn, on a machine that does much else
+LIMIT_S = 180.0  # of one turn, on a busy machine
 
 
 def main() -> None:
-    """Measure, or play one part of a measurement."""
+    """Measure, or run one part of a measurement."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=40.0, help="how long to measure")
     parser.add_argument("--stress", action="store_true", help="stress both directions instead")
@@ -55,14 +55,14 @@ def main() -> None:
 
 
 def start(*part: str) -> subprocess.Popen[str]:
-    """Start one part in a process of its own."""
+    """Start one part in its own process."""
     command = [sys.executable, "-W", "ignore", __file__, "--part", *part]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)  # noqa: S603  # this file
 
 
 def ask(part: subprocess.Popen[str], question: str) -> Any:
-    """Return what a part answers to a line."""
+    """Return a part's answer to a line."""
     if part.stdin is None or part.stdout is None:
         raise RuntimeError("the part has no pipes")
     part.stdin.write(question + "\n")
@@ -96,9 +96,9 @@ def measure(
 ) -> tuple[int, dict[tuple[str, str], list[int]]]:
     """Return how many turns each player had, and its round trips in ns by player and name."""
     for player in players.values():
-        ask(player, "0 0 0")  # until it knows its echo
+        ask(player, "0 0 0")  # until it has found its echo
     for player in players.values():
-        ask(player, f"tight {PLAN[0][1]} 0")  # the first turn warms up
+        ask(player, f"tight {PLAN[0][1]} 0")  # the first turn is for warming up
     times: dict[tuple[str, str], list[int]] = {}
     turns = 0
     ends = time.perf_counter() + seconds
@@ -122,7 +122,7 @@ def end(part: subprocess.Popen[str]) -> None:
 
 
 def play(role: str, kind: str) -> None:
-    """Play one part."""
+    """Run one part."""
     if role == "stress":
         asyncio.run(stress_part(float(kind)))
     elif role == "idle":
@@ -191,7 +191,7 @@ async def aionode_part(role: str, kind: str) -> None:
 
         node.create_subscription(String, f"{topic}_pong", on_pong)
         message = String(data=TEXT)
-        while not ended.done():  # until the echo knows this process
+        while not ended.done():  # until the echo has found this process
             send()
             await asyncio.wait([ended], timeout=FIRST_S)
         while (turn := await asyncio.to_thread(next_turn)) is not None:
@@ -250,7 +250,7 @@ def rclpy_part(role: str, kind: str) -> None:
     timer = node.create_timer(0.01, send)
     timer.cancel()
     node.create_subscription(String, f"{topic}_pong", on_pong, 10)
-    while not ended.done():  # until the echo knows this process
+    while not ended.done():  # until the echo has found this process
         send()
         executor.spin_until_future_complete(ended, timeout_sec=FIRST_S)
     while (turn := next_turn()) is not None:
@@ -261,7 +261,7 @@ def rclpy_part(role: str, kind: str) -> None:
             send()
             executor.spin_until_future_complete(ended, timeout_sec=LIMIT_S)
         tell(times)
-    os._exit(0)  # EventsExecutor may hold its node back
+    os._exit(0)  # EventsExecutor may keep its node alive
 
 
 def end_with_stdin() -> None:
@@ -274,9 +274,9 @@ def end_with_stdin() -> None:
 
 
 def stress(seconds: float) -> None:
-    """Print what came of messages in both directions between two processes.
+    """Print the results of messages in both directions between two processes.
 
-    A third process, whose loop does nothing, shows which gaps are the machine's.
+    A third process, whose loop does nothing, shows which stalls are the machine's.
     """
     parts = [start("stress", str(seconds)), start("stress", str(seconds))]
     idle = start("idle", str(seconds))
@@ -286,9 +286,9 @@ def stress(seconds: float) -> None:
 
 
 class Gaps:
-    """By how much the loop was late, again and again, in milliseconds.
+    """How late the loop was, repeatedly, in milliseconds.
 
-    What the thread waited for a processor, as Linux counts it, is known apart.
+    Time that the thread waited for a processor, as counted by Linux, is known separately.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -303,7 +303,7 @@ class Gaps:
         return int(os.pread(self._waited, 100, 0).split()[1]) / 1e6
 
     def watch(self) -> None:
-        """Look every millisecond from now on."""
+        """Check every millisecond from now on."""
         self._handle = self._loop.call_later(
             0.001, self._look, time.perf_counter() + 0.001, self._waited_ms()
         )
@@ -315,7 +315,7 @@ class Gaps:
         self.watch()
 
     def end(self) -> str:
-        """Look no more, and return what was found."""
+        """Stop checking, and return the results."""
         if self._handle is not None:
             self._handle.cancel()
         text = []
@@ -328,7 +328,7 @@ class Gaps:
 
 
 async def idle_part(seconds: float) -> None:
-    """Print how late a loop without anything to do is."""
+    """Print how late an idle loop is."""
     gaps = Gaps(asyncio.get_running_loop())
     gaps.watch()
     await asyncio.sleep(seconds)
@@ -342,10 +342,10 @@ def resident_kb() -> int:
 
 
 class Stream:
-    """Numbered messages of one size in both directions, of which each has to arrive.
+    """Numbered messages of one size in both directions, each of which has to arrive.
 
-    Each size has a topic of its own: Fast DDS never shrinks the buffers of a topic, so that large
-    messages among small ones would have all of them grow.
+    Each size has its own topic: Fast DDS never shrinks the buffers of a topic, so that large
+    messages among small ones would make all of them grow.
     """
 
     def __init__(self, node: Any, size: int) -> None:
@@ -369,7 +369,7 @@ class Stream:
         self.sent += 1
 
     async def read(self) -> None:
-        """Read, and count what is not in order."""
+        """Read, and count messages out of order."""
         async for msg in self._reader:
             data = bytes(msg.data)
             sender, number = data[:4], int.from_bytes(data[4:12], "little")
@@ -385,7 +385,7 @@ class Stream:
 
 
 async def stress_part(seconds: float) -> None:
-    """Publish as fast as the other side reads, and read; print what came and what was slow."""
+    """Publish as fast as the other side reads, and read; print the results and what was slow."""
     from aionode import Context, Node, freeze_objects
 
     async with (
@@ -415,7 +415,7 @@ async def stress_part(seconds: float) -> None:
             await one.publisher.drain()
         late = gaps.end()
         before: list[dict[bytes, int]] = []
-        while before != [one.last for one in streams]:  # the other side may send on for a while
+        while before != [one.last for one in streams]:  # the other side may still send for a while
             before = [dict(one.last) for one in streams]
             await asyncio.sleep(2.0)
         for task in reading:

@@ -1,9 +1,9 @@
-"""The same programs of rclpy on aionode and on ROS 2's rclpy: how long a message takes.
+"""The same rclpy programs on aionode and on ROS 2's rclpy: how long a message takes.
 
 One program publishes to a callback of its own node a hundred times a second (``in process``); two
 programs send a small message to and fro a hundred times a second (``two processes``). Each runs
 unmodified on ``aionode run`` and on rclpy with its default and its events executor, side by side
-and measured in turns, so that whatever else the machine does falls on all of them.
+and measured in turns, so that other load affects all of them.
 
 rclpy is that of the interpreter named by ``RCLPY_PYTHON``, or else of this one
 (``pip install 'aionode[ros]'``). Run it with ``python benchmarks/rclpy_programs.py``.
@@ -116,7 +116,7 @@ def measure(
         for turn in range(turns + 1):
             for name, programs in running.items():
                 found = ask(programs[-1])
-                if turn:  # the first one warms up
+                if turn:  # the first one is for warming up
                     times[name] += found
     finally:
         for programs in running.values():
@@ -127,7 +127,7 @@ def measure(
 
 
 def start(command: tuple[str, ...], role: str, domain_id: int) -> subprocess.Popen[str]:
-    """Start one program in a domain of its own."""
+    """Start one program in its own domain."""
     *program, kind = command
     environment = {
         **os.environ,
@@ -153,7 +153,7 @@ def ask(player: subprocess.Popen[str]) -> list[int]:
     if not line:
         raise RuntimeError(f"{player.args!r} ended")
     found: list[int] = json.loads(line)
-    time.sleep(0.02)  # what the turn has left to do
+    time.sleep(0.02)  # work that is left over from the turn
     return found
 
 

@@ -1,9 +1,9 @@
-"""How many messages a second a robot of four nodes takes in a replay, beside the nodes alone.
+"""How many messages per second a robot of four nodes processes in a replay, and by itself.
 
 The nodes are those of examples/replay: timers, an action, parameters, transforms, and a thread,
 over 60 s of data. Alone, the same messages are published to the same nodes in the same stepped
-time, from a list in memory: nothing is read, decoded or watched. What the nodes publish is
-taken in both, and has to be the same. The rounds alternate; each is a new loop.
+time, from a list in memory: nothing is read, decoded or watched. In both cases the nodes' output is
+recorded, and has to be the same. The rounds alternate; each has a new loop.
 
     python benchmarks/replay.py [--rounds 5] [--uvloop]
 """
@@ -32,7 +32,7 @@ from examples.replay.robot import OUTPUTS, make_robot, record
 
 
 async def in_a_replay(path: Path) -> tuple[float, str]:
-    """Return the seconds of processor time that a replay takes, and its digest."""
+    """Return the seconds of processor time of a replay, and its digest."""
     async with bag.replay(path) as run:
         make_robot()
         began = time.process_time()

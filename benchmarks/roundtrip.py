@@ -1,9 +1,9 @@
-"""How long a message takes to another process and back, against Zenoh alone.
+"""How long a message takes to another process and back, compared with Zenoh alone.
 
-Two processes on loopback send one small message to and fro: with aionode (a `Node`, codec,
-callbacks and their statistics included), and with zenoh-python and one `call_soon_threadsafe` for
+Two processes on loopback send one small message to and fro: with aionode (a `Node`, including
+codec, callbacks and their statistics), and with zenoh-python and one `call_soon_threadsafe` for
 each message into the same kind of event loop. Both are measured in turns in the same run, so that
-whatever else the machine does hits both.
+other load affects both.
 
 Run it with ``python benchmarks/roundtrip.py``. It prints a table and writes ``roundtrip.json`` to
 ``benchmarks/results/``; ``--quick`` takes a fifth of the time, for a first look.
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 PAYLOAD: Final = "x" * 23  # 32 bytes of CDR
 RAW_PAYLOAD: Final = bytes(32)
-ATTACHMENT: Final = bytes(33)  # what goes with every message of ROS
+ATTACHMENT: Final = bytes(33)  # sent with every ROS message
 MESSAGES: Final = 2_000
 ROUNDS: Final = 7
 RAW_PORT: Final = 18_461
@@ -57,17 +57,17 @@ class Row:
 
 
 class Ball(Protocol):
-    """One side's way to play: `play` returns the times of so many round trips."""
+    """One side's way to play: `play` returns the times of some round trips."""
 
     async def play(self, count: int) -> list[int]:
-        """Send to and fro so many times."""
+        """Send to and fro a number of times."""
 
 
 # Zenoh alone
 
 
 def raw_session(*, listen: bool) -> zenoh.Session:
-    """Return a session with the settings that aionode uses, linked to the other process only."""
+    """Return a session with aionode's settings, linked only to the other process."""
     config = zenoh.Config()
     endpoint = f"tcp/127.0.0.1:{RAW_PORT}"
     for key, value in {
@@ -114,7 +114,7 @@ class RawBall:
         self._publisher.put(RAW_PAYLOAD, attachment=ATTACHMENT)
 
     async def play(self, count: int) -> list[int]:
-        """Send to and fro so many times."""
+        """Send to and fro a number of times."""
         self.times = []
         self._left = count
         self._done = asyncio.get_running_loop().create_future()
@@ -157,7 +157,7 @@ class NodeBall:
         await self._publisher.wait_for_subscribers()
 
     async def play(self, count: int) -> list[int]:
-        """Send to and fro so many times."""
+        """Send to and fro a number of times."""
         self._times = []
         self._left = count
         self._done = asyncio.get_running_loop().create_future()
@@ -171,7 +171,7 @@ class NodeBall:
 
 
 def stdin_closed() -> Awaitable[None]:
-    """Return what ends when the other process has ended, or wants this one to."""
+    """Return a future that is done when the other process has ended, or wants this one to end."""
     loop = asyncio.get_running_loop()
     closed: asyncio.Future[None] = loop.create_future()
 
@@ -184,7 +184,7 @@ def stdin_closed() -> Awaitable[None]:
 
 
 async def echo(kind: str) -> None:
-    """Send back whatever comes, until stdin is closed."""
+    """Send back whatever arrives, until stdin is closed."""
     if kind == "zenoh":
         session = await asyncio.to_thread(raw_session, listen=True)
         RawBall(session, "ping", "pong")
@@ -200,7 +200,7 @@ async def echo(kind: str) -> None:
 
 @contextmanager
 def other_process(kind: str, loop: str) -> Iterator[None]:
-    """Run the echoing side of `kind` meanwhile."""
+    """Run the echoing side of `kind` within the block."""
     command = [sys.executable, __file__, "--echo", kind, "--loop", loop]
     with subprocess.Popen(  # noqa: S603  # this file
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -243,7 +243,7 @@ async def measure(loop: str, messages: int, rounds: int) -> AsyncIterator[Row]:
             loop,
             kind,
             len(found),
-            # Of the rounds' medians the median, so that one disturbed round does not count.
+            # The median of the rounds' medians, so that one disturbed round does not count.
             int(statistics.median(medians[kind])),
             found[len(found) * 99 // 100],
             found[-1],
@@ -251,7 +251,7 @@ async def measure(loop: str, messages: int, rounds: int) -> AsyncIterator[Row]:
 
 
 def loop_factory(name: str) -> Callable[[], asyncio.AbstractEventLoop] | None:
-    """Return what makes the event loop called `name`."""
+    """Return the factory of the event loop called `name`."""
     if name != "uvloop":
         return None
     import uvloop
@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--loop", choices=["asyncio", "uvloop"], help="only this event loop")
     parser.add_argument("--echo", choices=["zenoh", "aionode"], help=argparse.SUPPRESS)
     args = parser.parse_args()
-    os.environ["AIONODE_MEETING_PORTS"] = PORTS  # meet no other process
+    os.environ["AIONODE_MEETING_PORTS"] = PORTS  # do not meet other processes
     os.environ["AIONODE_ROUTER_PORT"] = "18465"
     os.environ["AIONODE_LINK"] = "off"  # link.py measures what a link makes of it
     if args.echo:

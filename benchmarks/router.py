@@ -1,9 +1,9 @@
-"""What a router beside two linked processes costs them, against the same two without one.
+"""What a router beside two linked processes costs them, compared with the same two without one.
 
 Two pairs of processes send one small message to and fro over a link, in slices that take turns: one
-pair has ``aionode router`` on its port, the other one nothing. Sessions behind the router may
-subscribe unseen, so it has to be known whether one does: while it is not, each message goes over
-Zenoh as well, which is the third row. There a plain Zenoh program subscribes behind the router.
+pair has ``aionode router`` on its port, the other has nothing. Sessions behind the router may
+subscribe unseen, so a process has to find out whether one does: until it knows, each message also
+goes over Zenoh, which is the third row. There a plain Zenoh program subscribes behind the router.
 
 Run it with ``python benchmarks/router.py``; it takes a minute. p50 is the median of the slices'
 medians; the processor time is that of this process, Zenoh's threads included, for each round trip.
@@ -43,7 +43,7 @@ PORTS: Final = {ALONE: 18_470, BESIDE: 18_475}
 
 
 def meet(kind: str) -> str:
-    """Let this process meet those of one kind only, and return the port of their router."""
+    """Let this process meet only those of one kind, and return the port of their router."""
     first = PORTS[kind]
     os.environ["AIONODE_MEETING_PORTS"] = f"{first},{first + 1},{first + 2}"
     os.environ["AIONODE_ROUTER_PORT"] = port = str(first + 3)
@@ -51,7 +51,7 @@ def meet(kind: str) -> str:
 
 
 async def echo() -> None:
-    """Send back whatever comes, until stdin is closed."""
+    """Send back whatever arrives, until stdin is closed."""
     async with Context(link=True) as context, node_of("echo", context) as node:
         NodeBall(node, "ping", "pong", echo=True)
         print("ready", flush=True)
@@ -60,7 +60,7 @@ async def echo() -> None:
 
 @contextmanager
 def process(*command: str) -> Iterator[None]:
-    """Run another process meanwhile, which has said that it is ready."""
+    """Run another process within the block, once it is ready."""
     with subprocess.Popen(  # noqa: S603  # aionode's own programs
         [sys.executable, *command], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as other:
@@ -106,7 +106,7 @@ def subscriber() -> Iterator[None]:
 
 
 class Times:
-    """What was measured of one kind."""
+    """The measurements of one kind."""
 
     def __init__(self) -> None:
         self.slices_ns: list[float] = []

@@ -1,16 +1,16 @@
-"""What many nodes, endpoints and processes cost, and whether all is known in the end.
+"""What many nodes, endpoints and processes cost, and whether all are found in the end.
 
-First many nodes in one process: time to make, memory, and what they do while idle.
+First many nodes in one process: time to create, memory, and their work while idle.
 
-Every node has its parameter services and its log topic, as a node has unless told otherwise, and
-half as many publishers and subscriptions as it has topics. Each size runs in a process of its own,
-so that the memory of one is not what another gave back. Wake-ups are turns of the event loop in one
-second in which nothing happens, beyond those that end the second itself.
+Every node has its parameter services and its log topic, as by default, and half as many publishers
+and subscriptions as it has topics. Each size runs in its own process, so that the memory of one
+does not include what another freed. Wake-ups are iterations of the event loop in one second in
+which nothing happens, beyond those that end the second itself.
 
 Then publishers with as many subscriptions in another process, over links and over Zenoh, each with
-a topic of its own and all with one; clients that wait for services while other things change; and
-many processes that start at once, of one context or of several. Each row says how its cost has
-grown beside the row before, and what is missing: in the graph, on the route, or in the answer of
+its own topic and all with one; clients that wait for services while other things change; and many
+processes that start at once, with one context or several. Each row shows how its cost has grown
+compared with the row before, and what is missing: in the graph, on the route, or in the answer of
 ``aionode topic list``. The program fails if anything is.
 
 Run it with ``python benchmarks/scale.py``; ``--quick`` leaves out the largest size. It prints a
@@ -43,12 +43,12 @@ RESULTS: Final = Path(__file__).parent / "results"
 NODES: Final = (100, 300, 1000)
 TOPICS: Final = 10
 WARM_UP: Final = 20
-"""Nodes made before, so that what is made once for all does not count."""
+"""Nodes created before, so that one-time costs do not count."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """One row; times and memory are for each node."""
+    """One row; times and memory are per node."""
 
     nodes: int
     make_ms: float
@@ -63,18 +63,18 @@ class Cost:
 
 
 class CountingSelector(selectors.DefaultSelector):
-    """Counts the turns of the event loop that asks it."""
+    """Counts the iterations of the event loop that uses it."""
 
     turns = 0
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        """Wait as the selector of the system does."""
+        """Wait like the selector of the system."""
         self.turns += 1
         return super().select(timeout)
 
 
 def resident_kb() -> float:
-    """Return the memory of this process; 0 where the system does not tell."""
+    """Return the memory of this process; 0 where the system does not report it."""
     gc.collect()
     statm = Path("/proc/self/statm")
     if not statm.exists():
@@ -83,7 +83,7 @@ def resident_kb() -> float:
 
 
 class Stopwatch:
-    """Tells how much time has passed since it was last asked, in milliseconds for each node."""
+    """Returns the time since it was last asked, in milliseconds per node."""
 
     def __init__(self, nodes: int) -> None:
         self._nodes = nodes
@@ -95,7 +95,7 @@ class Stopwatch:
         return round((self._since - before) * 1e3 / self._nodes, 3)
 
     def skip(self) -> None:
-        """Begin a lap now."""
+        """Start a lap now."""
         self._since = time.perf_counter()
 
 
@@ -104,12 +104,12 @@ async def idle_second(selector: CountingSelector) -> tuple[int, float]:
     await asyncio.sleep(0.1)
     turns, cpu = selector.turns, time.process_time()
     await asyncio.sleep(1)
-    used = selector.turns - turns - 2  # one rings the alarm, one goes on here
+    used = selector.turns - turns - 2  # one rings the alarm, one continues here
     return used, round(100 * (time.process_time() - cpu), 3)
 
 
 async def measure(count: int, selector: CountingSelector) -> Cost:
-    """Return what `count` nodes cost."""
+    """Return the cost of `count` nodes."""
     context = Context(transport="local")
     async with context, asyncio.TaskGroup() as tasks:
         for number in range(WARM_UP):
@@ -172,14 +172,14 @@ async def measure(count: int, selector: CountingSelector) -> Cost:
 
 
 def measure_here(count: int) -> Cost:
-    """Return what `count` nodes cost in this process."""
+    """Return the cost of `count` nodes in this process."""
     selector = CountingSelector()
     with asyncio.Runner(loop_factory=lambda: asyncio.SelectorEventLoop(selector)) as runner:
         return runner.run(measure(count, selector))
 
 
 def measure_elsewhere(count: int) -> Cost:
-    """Return what `count` nodes cost in a new process."""
+    """Return the cost of `count` nodes in a new process."""
     program = [sys.executable, __file__, "--nodes", str(count)]
     done = subprocess.run(program, check=True, capture_output=True, text=True)  # noqa: S603  # itself
     return Cost(**json.loads(done.stdout))

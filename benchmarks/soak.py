@@ -1,13 +1,13 @@
-"""Everything at once for a long time: nothing may grow, nothing may be lost uncounted.
+"""Everything at once for a long time: nothing may grow, and nothing may be lost uncounted.
 
-One process has a fast publisher that floods a slow reader, a service, an action and a timer of
-10 ms; nodes come and go in it, calls are answered, time out and are cancelled. Beside it processes
-come and go, over links and over Zenoh alone: they hear the flood, call, send goals, give goals up,
-exchange large messages, and end in good order or are killed.
+One process has a fast publisher that floods a slow reader, a service, an action and a timer of 10
+ms; nodes come and go in it, and calls are answered, time out and are cancelled. Other processes
+come and go, over links and over Zenoh alone: they receive the flood, call, send goals, abandon
+goals, exchange large messages, and end properly or are killed.
 
-After a warm-up and at the end the guests are sent away and everything is counted that could be
-left behind: tasks, descriptors, threads, memory, shared memory, and the entities that a newcomer
-finds on the network. The program fails if any of it has grown, or if what was sent is not what was
+After a warm-up and at the end, the guests are sent away and everything that could be left behind is
+counted: tasks, descriptors, threads, memory, shared memory, and the entities that a newcomer finds
+on the network. The program fails if any of it has grown, or if the messages sent are not those
 received, dropped and left.
 
 Run it with ``make soak``, or ``python benchmarks/soak.py --seconds 600``.
@@ -42,7 +42,7 @@ LARGE_BYTES: Final = 300_000
 GUESTS_AT_ONCE: Final = 2
 GUEST_SEC: Final = 1.0
 LEVEL_LIMIT_SEC: Final = 20.0
-"""How long what belongs to guests may take to go after they have."""
+"""How long the things of guests may remain after they have gone."""
 
 
 class Level(NamedTuple):
@@ -60,11 +60,11 @@ class Level(NamedTuple):
 
 
 ALLOWED: Final = Level(3, 4, 2, 12_000, 4, 0)
-"""How much each may grow: calls under way, and what is needed late for the first time."""
+"""How much each may grow: calls in progress, and what is first needed late."""
 
 
 def level(entities: int) -> Level:
-    """Return the current level; 0 where the system does not tell."""
+    """Return the current level; 0 where the system does not report it."""
     gc.collect()
     me = Path("/proc/self")
     try:
@@ -89,7 +89,7 @@ def is_shared(line: str) -> bool:
 
 
 class Soak:
-    """What is done, and what is counted."""
+    """The work that is done, and its counts."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -109,7 +109,7 @@ class Soak:
         self.nodes = self.processes = self.killed = self.goals = self.taken = 0
 
     def read(self, _msg: String) -> None:
-        """Take longer than messages take to come."""
+        """Take longer than messages take to arrive."""
         time.sleep(0.0005)
 
     def take(self, _msg: UInt8MultiArray) -> None:
@@ -121,13 +121,13 @@ class Soak:
         self.ticks += 1
 
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-        """Answer at once, or too late where a is negative."""
+        """Answer immediately, or too late if a is negative."""
         if request.a < 0:
             await asyncio.sleep(0.05)
         return AddTwoInts.Response(sum=request.a + request.b)
 
     async def count(self, goal: Any) -> Fibonacci.Result:
-        """Count as far as a goal asks for."""
+        """Count as far as a goal requests."""
         self.goals += 1
         for number in range(goal.request.order):
             await asyncio.sleep(0.01)
@@ -144,7 +144,7 @@ class Soak:
             await asyncio.sleep(0.002)
 
     async def call(self) -> None:
-        """Call without end: with an answer, with a time limit that passes, and cancelled."""
+        """Call repeatedly: with an answer, with a time limit that passes, and cancelled."""
         while True:
             await self.client.call(AddTwoInts.Request(a=self.calls, b=1))
             self.calls += 1
@@ -160,7 +160,7 @@ class Soak:
             self.cancelled += 1
 
     async def come_and_go(self) -> None:
-        """Make nodes with entities, and end them, without end."""
+        """Create nodes with entities, and end them, repeatedly."""
         while True:
             await self.invited.wait()
             async with Node("visitor", context=self.context) as visitor:
@@ -170,7 +170,7 @@ class Soak:
             self.nodes += 1
 
     async def invite(self, number: int) -> None:
-        """Start processes, one after the other, and end them in every way."""
+        """Start processes, one after another, and end them in every way."""
         for turn in itertools.count(number):
             await self.invited.wait()
             guest = await asyncio.create_subprocess_exec(
@@ -184,7 +184,7 @@ class Soak:
             self.guests.add(guest)
             try:
                 if guest.stdout is not None:
-                    await guest.stdout.readline()  # its node runs
+                    await guest.stdout.readline()  # its node is running
                 await asyncio.sleep(GUEST_SEC)
                 kill = turn % 3 == 0
                 guest.send_signal(signal.SIGKILL if kill else signal.SIGTERM)
@@ -245,7 +245,7 @@ class Guest(Node):
         self.back.publish(msg)
 
     async def work(self) -> None:
-        """Call, and send goals; every second one is given up."""
+        """Call, and send goals; every second one is abandoned."""
         await self.adding.wait_for_service()
         await self.counting.wait_for_server()
         for number in itertools.count():
@@ -256,7 +256,7 @@ class Guest(Node):
 
 
 async def be_guest() -> None:
-    """Be one, until a signal comes."""
+    """Run a guest, until a signal arrives."""
     async with Guest() as guest:
         print("here", flush=True)
         await guest.work()
@@ -295,7 +295,7 @@ async def soak(seconds: float) -> list[str]:
 
 @contextlib.contextmanager
 def apart() -> Iterator[None]:
-    """Let this process and its guests hear each other, and nothing else on the machine."""
+    """Isolate this process and its guests from everything else on the machine."""
     with contextlib.ExitStack() as until_all_are_found:
         held = [until_all_are_found.enter_context(socket.socket()) for _ in range(4)]
         for one in held:

@@ -1,7 +1,7 @@
-"""How soon a second process hears the first: from its exec to its first message.
+"""How soon one process receives from another: from its exec to its first message.
 
-The first process says something a hundred times a second. The second is a whole program: it loads
-Python, aionode and Zenoh, finds the first by itself and prints what it hears first.
+The first process publishes a hundred times a second. The second is a whole program: it loads
+Python, aionode and Zenoh, finds the first by itself and prints the first message that it receives.
 
 Run it with ``python benchmarks/start.py``. It prints a table and writes ``start.json`` to
 ``benchmarks/results/``.
@@ -65,7 +65,7 @@ def start(program: str) -> subprocess.Popen[str]:
 
 
 def second_ms() -> tuple[float, float]:
-    """Run the second process once: ms until its modules are loaded, and until it hears."""
+    """Run the second process once: ms until its modules are loaded, and until it receives."""
     began_ns = time.perf_counter_ns()
     with start(SECOND) as process:
         assert process.stdout is not None  # noqa: S101  # it is a pipe
@@ -78,7 +78,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a quarter of the runs")
     args = parser.parse_args()
-    os.environ["AIONODE_MEETING_PORTS"] = "18482,18483,18484"  # hear no other process
+    os.environ["AIONODE_MEETING_PORTS"] = "18482,18483,18484"  # do not meet other processes
     os.environ["AIONODE_ROUTER_PORT"] = "18485"
     with start(FIRST) as first:
         assert first.stdout is not None  # noqa: S101  # it is a pipe

@@ -1,4 +1,4 @@
-"""Transforms: what a lookup costs beside its arithmetic, and what those who wait cost.
+"""Transforms: what a lookup costs compared with its arithmetic, and what pending waits cost.
 
 Each figure is a ratio within one run, or a share of one processor, so that runs on different
 machines can be compared: ``python benchmarks/tf.py``.
@@ -41,7 +41,7 @@ SECOND = 10**9
 
 
 def stamped(parent: str, child: str, stamp_ns: int) -> TransformStamped:
-    """Return a transform that turns slowly."""
+    """Return a transform that rotates slowly."""
     sec, nanosec = divmod(stamp_ns, SECOND)
     angle = stamp_ns / SECOND
     return TransformStamped(
@@ -99,7 +99,7 @@ def insertions() -> None:
 
 
 def memory() -> None:
-    """Show what 100 frames of 100 Hz take for 10 s."""
+    """Show the memory taken by 100 frames of 100 Hz for 10 s."""
     core = BufferCore()
     tracemalloc.start()
     for step in range(1000):
@@ -124,7 +124,7 @@ def batch(step: int) -> TFMessage:
 async def share_of(
     node: Node, publish: Callable[[int], object], seconds: float, first: int = 0
 ) -> float:
-    """Return which part of a processor is used while messages are published at the rate."""
+    """Return the share of a processor used while messages are published at the rate."""
     clock = node.get_clock()
     cpu, began = time.process_time(), time.perf_counter()
     for step in range(first, first + round(seconds * RATE)):
@@ -140,7 +140,7 @@ def publish(publisher: Publisher[TFMessage], made: list[TFMessage], step: int) -
 
 
 async def waiters(seconds: float) -> None:
-    """Show what a hundred waiters cost while transforms come a thousand times a second."""
+    """Show the cost of a hundred pending waits with a thousand transforms per second."""
     made = [batch(step) for step in range(round(seconds * RATE))]
     shares = []
     for count, buffered in ((0, False), (0, True), (WAITERS, True)):
@@ -169,7 +169,7 @@ async def waiters(seconds: float) -> None:
 
 
 async def filters(seconds: float) -> None:
-    """Show what a thousand messages a second cost that wait in a filter."""
+    """Show the cost of a thousand messages per second that wait in a filter."""
     shares = []
     for filtered in (False, True):
         async with Node("bench", context=Context(transport="local")) as node:
@@ -190,7 +190,8 @@ async def filters(seconds: float) -> None:
 
             def publish_and_move(step: int) -> None:
                 points.publish(made[step])  # noqa: B023
-                if step % 20 == 19:  # the transform comes later than what waits for it
+                # the transform arrives later than the message that waits for it
+                if step % 20 == 19:
                     ends = SECOND + step * SECOND // RATE
                     buffer.set_transform(stamped("map", "f0", ends), "bench")  # noqa: B023
 

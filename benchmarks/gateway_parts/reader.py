@@ -1,15 +1,16 @@
-"""Many clients of rosbridge in one process, which cost next to no processor time.
+"""Many rosbridge clients in one process, which take next to no processor time.
 
-``python reader.py OPTIONS``, which are JSON: ``port``; ``clients``, how many; ``subscribe``, the op
-with which each of them begins; ``last``, the number of the last message; ``deaf``, how many further
-ones subscribe and then read nothing; ``wait_sec``, after how long without any message it gives up.
+``python reader.py OPTIONS``, where OPTIONS are JSON: ``port``; ``clients``, their number;
+``subscribe``, the op with which each of them begins; ``last``, the number of the last message;
+``deaf``, how many further ones subscribe and then read nothing; ``wait_sec``, the time without any
+message after which it gives up.
 
-Each message has a number: the first one in it, or the seconds of a stamp at its beginning.
-It prints ``ready`` when every client has got one, and at the end JSON: for each client how many of
-the numbers from 1 to the last one it lacks, got twice, and got out of order. With ``count`` in the
-place of ``last``, messages have no numbers: it prints ``ready`` when all have connected, and then
-how many of so many messages each client lacks.
-It knows no aionode and no library of WebSockets: those would take more time than the gateway does.
+Each message has a number: the first one in it, or the seconds of a stamp at its beginning. It
+prints ``ready`` when every client has received one, and JSON at the end: for each client how many
+of the numbers up to the last one are missing, duplicated, and out of order. With ``count`` instead
+of ``last``, messages have no numbers: it prints ``ready`` when all are connected, and then how many
+of that many messages each client lacks. It uses neither aionode nor a WebSocket library, which
+would take more time than the gateway.
 """
 
 from __future__ import annotations
@@ -28,14 +29,14 @@ BYTES = b"\x65bytes\x5a"
 """The last key of a frame of cbor-raw, and the kind of its value, whose length follows."""
 
 BEGINNING = 512
-"""In how many bytes of a message its number has to be."""
+"""The number of bytes at the beginning of a message that contain its number."""
 
 REQUEST = (
     "GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
     "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n"
 )
 MASK = b"\0\0\0\0"
-"""The key that a frame of a client is masked with; that of zeros changes nothing."""
+"""The key that masks a client's frames; zeros change nothing."""
 
 TEXT, PING, PONG = 0x81, 0x89, 0x8A
 
@@ -66,18 +67,18 @@ def opened(port: int, receive_bytes: int = 0) -> socket.socket:
 
 
 class Client:
-    """One client: takes frames apart, and notes the numbers of messages."""
+    """A client: splits frames, and records the numbers of messages."""
 
     def __init__(self, port: int, subscribe: str) -> None:
         self.socket = opened(port)
         self.socket.sendall(frame_of(subscribe))
         self.numbers: list[int] = []
         self.count = 0
-        self._begun = bytearray()  # the beginning of a frame: its head, and of its payload
-        self._skip = 0  # how much of the frame is still to come, and has no number
+        self._begun = bytearray()  # the beginning of a frame: its header, and of its payload
+        self._skip = 0  # how much of the frame is still to come, without a number in it
 
     def take(self) -> int:
-        """Take what has arrived, and return how much that was; 0 at the end of the connection."""
+        """Process arrived data, and return its size; 0 at the end of the connection."""
         size = self.socket.recv_into(CHUNK)
         at = min(self._skip, size)
         self._skip -= at
@@ -99,7 +100,7 @@ class Client:
         return size
 
     def _frame(self, data: Any, at: int) -> tuple[int | None, int]:
-        """Return where a frame ends and its payload begins; None if not enough of it is there."""
+        """Return where a frame ends and its payload begins; None if too little has arrived."""
         there = len(data) - at
         if there < 2:
             return None, 0
@@ -127,7 +128,7 @@ class Client:
             self.numbers.append(int.from_bytes(beginning[body : body + 4], "little"))
 
     def verdict(self, last: int) -> list[int]:
-        """Return how many numbers it lacks, got twice, and got out of order."""
+        """Return how many numbers are missing, duplicated, and out of order."""
         counted = [number for number in self.numbers if number > 0]
         different = len(set(counted))
         in_order = sum(b < a for a, b in zip(self.numbers, self.numbers[1:], strict=False))
@@ -153,7 +154,7 @@ def main(options: dict[str, Any]) -> None:
 
 
 def read(clients: list[Client], has_all: Callable[[Client], bool], options: dict[str, Any]) -> None:
-    """Read until every client has all, or nothing has arrived for some time."""
+    """Read until every client has everything, or nothing has arrived for some time."""
     selector = selectors.DefaultSelector()
     for client in clients:
         selector.register(client.socket, selectors.EVENT_READ, client)

@@ -1,7 +1,7 @@
-"""What is counted for one message: each case without Zenoh's threads, and in one process.
+"""The cases whose instructions are counted: without Zenoh's threads, and in one process.
 
-A case is an async context manager that yields a function; each call of it begins one message, and
-a few turns of the event loop end it.
+A case is an async context manager that yields a function; each call of it starts one message, and a
+few loop iterations complete it.
 """
 
 # ruff: noqa: ARG002  # what the contract of transports passes
@@ -37,7 +37,7 @@ from benchmarks.ipc_parts.common import TEXT, is_linked, node_of
 __all__ = ["CASES", "TURNS", "Count", "calibrate"]
 
 TURNS: Final = 3
-"""Turns of the event loop that end each message; a bare loop takes as many beside it."""
+"""Loop iterations that complete each message; a bare loop for comparison takes as many."""
 
 SMALL: Final = 10  # depth of the queues
 
@@ -60,7 +60,7 @@ Case = Callable[[Count], AbstractAsyncContextManager[Callable[[], Any]]]
 
 
 class Silent(Writer, Requester):
-    """An endpoint that nothing is behind."""
+    """An endpoint with nothing behind it."""
 
     active = False
     bounded = False
@@ -73,7 +73,7 @@ class Silent(Writer, Requester):
         """Send nothing."""
 
     def has_room(self) -> bool:
-        """Have room always."""
+        """Always have room."""
         return True
 
     async def drain(self) -> None:
@@ -84,7 +84,7 @@ class Silent(Writer, Requester):
 
 
 class Introducer(Transport):
-    """In place of Zenoh: tells the contexts of this process of each other, and carries nothing."""
+    """Replaces Zenoh: tells the contexts of this process about each other, and carries nothing."""
 
     present: Final[dict[str, tuple[Introducer, Graph]]] = {}
 
@@ -102,7 +102,7 @@ class Introducer(Transport):
         """Send nothing."""
 
     def note_link(self, participant: str, on: bool) -> None:
-        """Tell no tools."""
+        """Report nothing to tools."""
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
         """Return whether there may be others, which announce nothing."""
@@ -112,7 +112,7 @@ class Introducer(Transport):
         """Remember nothing."""
 
     async def open(self, graph: Graph) -> None:
-        """Introduce the context to those that are there, and them to it."""
+        """Introduce the context and the existing ones to each other."""
         for other, theirs in self.present.values():
             for endpoint in theirs.endpoints():
                 if endpoint.node.participant == other.participant:
@@ -157,7 +157,7 @@ class Introducer(Transport):
 
 
 class NoSession:
-    """In place of a Zenoh session, and of all that it declares; `put` sends nothing."""
+    """Replaces a Zenoh session, and everything that it declares; `put` sends nothing."""
 
     matching = True
 
@@ -172,7 +172,7 @@ class NoSession:
 
 
 class Sample:
-    """What Zenoh hands over."""
+    """A sample as passed on by Zenoh."""
 
     def __init__(self, payload: bytes, extra: bytes) -> None:
         self.payload = zenoh.ZBytes(payload)
@@ -180,7 +180,7 @@ class Sample:
 
 
 class ZenohEndpoints(Introducer):
-    """aionode's endpoints of Zenoh, without a session."""
+    """aionode's endpoints for Zenoh, without a session."""
 
     def __init__(self, participant: str) -> None:
         super().__init__(participant)
@@ -214,7 +214,7 @@ class ZenohEndpoints(Introducer):
 
 @asynccontextmanager
 async def nothing(count: Count) -> AsyncIterator[Callable[[], Any]]:
-    """Turn the loop only."""
+    """Only run the loop."""
     yield count.take
 
 
@@ -242,7 +242,7 @@ async def in_process(count: Count) -> AsyncIterator[Callable[[], Any]]:
 
 @asynccontextmanager
 async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
-    """Return two nodes in two contexts that are linked as soon as they have a match."""
+    """Return two nodes in two contexts, which are linked once they have matching endpoints."""
 
     def context() -> Context:
         made = Context(transport="local")
@@ -259,7 +259,7 @@ async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
 
 @asynccontextmanager
 async def linked_pair(count: Count) -> AsyncIterator[tuple[Any, Any]]:
-    """Return a publisher and the connection at the other end, which hands over to `count`."""
+    """Return a publisher and the connection at the other end, which delivers to `count`."""
     async with linked_nodes() as (one, two):
         publisher = one.create_publisher(String, "topic", SMALL)
         two.create_subscription(String, "topic", count.take, SMALL)
@@ -294,7 +294,7 @@ async def link_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
         (sender,) = publisher._writers[1].routes.send_queues  # noqa: SLF001  # its end of the link
         sock = sender._sock  # noqa: SLF001  # to write past it
         payload = cdr.encode(String(data=TEXT))
-        # One for each message, made before they are counted.
+        # One for each message, created before counting.
         frames = iter(
             [
                 protocol.pack(protocol.Kind.DATA, 1_000 + number, 1, gid, payload)
@@ -395,19 +395,19 @@ CASES: Final[dict[str, Case]] = {
     "service call and response, link": service_call,
 }
 
-PILE: Final = bytes(2 << 20)  # twice the cache that is simulated
+PILE: Final = bytes(2 << 20)  # twice the simulated cache
 WARM_UP: Final = 64
 
 
 def empty_caches() -> None:
-    """Push everything else out of the caches, as what a processor does between messages does."""
+    """Evict everything else from the caches, as other work between messages does."""
     PILE.find(b"\x01")
 
 
 async def calibrate(name: str, messages: int) -> int:
-    """Play so many messages of a case, with empty caches before each; return how many arrived."""
+    """Run some messages of a case, with empty caches before each; return how many arrived."""
     count = Count()
-    gc.disable()  # or some runs have a collection more than others
+    gc.disable()  # otherwise some runs have a garbage collection more than others
     async with CASES[name](count) as begin:
         for number in range(WARM_UP + messages):
             if number == WARM_UP:

@@ -13,12 +13,12 @@ from benchmarks.ipc_parts.common import BURST, SILENCE_NS, SIZE
 
 
 class Burst:
-    """Bursts from the other process: `begin` asks for one, `take` is called for what comes."""
+    """Bursts from the other process: `begin` requests one, `take` is called for each arrival."""
 
     begin: Callable[[], object]
 
     def __init__(self) -> None:
-        self.sent: list[int] = []  # rates as well, where the other side tells
+        self.sent: list[int] = []  # rates as well, if the other side reports them
         self.rates: list[float] = []
         self.lost = 0
         self._clear()
@@ -27,7 +27,7 @@ class Burst:
         self._count = self._first = self._first_ns = self._last_ns = 0
 
     def take(self, count: int = 1) -> None:
-        """Count what has arrived."""
+        """Count arrived messages."""
         self._last_ns = time.perf_counter_ns()
         if not self._count:
             self._first, self._first_ns = count, self._last_ns
@@ -39,7 +39,7 @@ class Burst:
         began_ns = time.perf_counter_ns()
         self.begin()
         self._last_ns = time.perf_counter_ns()
-        # Polled, as an event would cost time with each message.
+        # Polled, because an event would cost time with each message.
         while self._count < BURST and time.perf_counter_ns() - self._last_ns < SILENCE_NS:  # noqa: ASYNC110
             await asyncio.sleep(0.02)
         self.lost += BURST - self._count

@@ -24,7 +24,7 @@ SIZE: Final = 72  # with the header of a frame
 IMAGE_BYTES: Final = 4_000_000
 BURST: Final = 20_000
 PERIOD_S: Final = 0.01
-SILENCE_NS: Final = 1_500_000_000  # after which the rest of a burst is lost
+SILENCE_NS: Final = 1_500_000_000  # after which the rest of a burst counts as lost
 FULL: Final = "full rate"
 PACED: Final = "100 Hz"
 SOCKET: Final = "bare Unix socket"
@@ -48,7 +48,7 @@ FLOOR_OF: Final = {IMAGE_ZENOH: IMAGE_FLOOR, IMAGE_LINK: IMAGE_FLOOR, IMAGE_FLOO
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is measured on each loop."""
+    """How much to measure on each loop."""
 
     rounds: int = 20
     full: int = 120
@@ -59,7 +59,7 @@ class Plan:
 
 
 QUICK: Final = Plan(rounds=3, full=100, paced=8, bursts=2, duty_rounds=2, duty_s=1.0)
-SETTLE: Final = {FULL: 10, PACED: 2}  # round trips at the begin of a slice that do not count
+SETTLE: Final = {FULL: 10, PACED: 2}  # round trips at the beginning of a slice that do not count
 
 
 def read_all(data: Any) -> int:
@@ -82,7 +82,7 @@ async def connect(protocol: Callable[[], Any], folder: str, name: str) -> Any:
 
 
 def raw_session(port: int, *, listen: bool) -> zenoh.Session:
-    """Return a plain session that is linked to the other process only."""
+    """Return a plain session that is linked only to the other process."""
     config = zenoh.Config()
     endpoint = f"tcp/127.0.0.1:{port}"
     for key, value in {
@@ -97,7 +97,7 @@ def raw_session(port: int, *, listen: bool) -> zenoh.Session:
 def zenoh_pair(
     session: zenoh.Session, hear: str, say: str, take: Callable[[], object]
 ) -> Callable[[], object]:
-    """Return what sends one message; `take` is called on the loop for each that comes."""
+    """Return a function that sends one message; `take` is called on the loop for each arrival."""
     loop = asyncio.get_running_loop()
     publisher = session.declare_publisher(say, congestion_control=zenoh.CongestionControl.BLOCK)
 
@@ -114,7 +114,7 @@ SPIN = "AIONODE_BENCHMARK_SPIN_US"
 
 @dataclass(frozen=True)
 class Run:
-    """What the processes of one measurement share: a folder, and ports from `port` on.
+    """The state shared by the processes of one measurement: a folder, and ports from `port` on.
 
     `cores` are those of the process that measures and of the other one; empty for any.
     """
@@ -130,7 +130,7 @@ class Run:
         return {0: "any", 1: ONE, 2: OWN}[len(set(self.cores))]
 
     def context(self, number: int, *, link: bool) -> Context:
-        """Return a context that hears those of the same number only: it hears no other context."""
+        """Return a context that only communicates with those of the same number."""
         first = self.port + 2 + 3 * number
         os.environ["AIONODE_ROUTER_PORT"] = str(self.port + 1)
         os.environ["AIONODE_MEETING_PORTS"] = f"{first},{first + 1},{first + 2}"
@@ -143,13 +143,13 @@ def node_of(name: str, context: Context) -> Node:
 
 
 def is_linked(publisher: Any) -> bool:
-    """Return whether the messages of `publisher` take a link, and nothing else."""
+    """Return whether the messages of `publisher` use only a link."""
     linked: int = publisher._writers[1].linked  # noqa: SLF001  # to measure nothing else
     return linked > 0
 
 
 async def lines(work: Callable[[str], Any]) -> None:
-    """Say "ready", then answer each line of stdin with what `work` returns or awaits, as JSON."""
+    """Print "ready", then answer each line of stdin with the result of `work`, awaited, as JSON."""
     reader = asyncio.StreamReader()
     await asyncio.get_running_loop().connect_read_pipe(
         lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
@@ -160,7 +160,7 @@ async def lines(work: Callable[[str], Any]) -> None:
 
 
 class Child:
-    """Another process of this file, which answers lines with lines."""
+    """Another process of this file, which answers line by line."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdin is not None  # noqa: S101  # both are pipes
@@ -182,7 +182,7 @@ class Child:
 
 @asynccontextmanager
 async def child(part: str, place: Run, kind: str = "") -> AsyncIterator[Child]:
-    """Run another process meanwhile, which is ready."""
+    """Run another process within the block, once it is ready."""
     process = await asyncio.create_subprocess_exec(
         sys.executable, PROGRAM, "--part", part, "--folder", place.folder, "--loop", place.loop,
         "--port", str(place.port), "--kind", kind, "--cores", ",".join(map(str, place.cores)),

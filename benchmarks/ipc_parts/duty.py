@@ -28,7 +28,7 @@ from benchmarks.ipc_parts.common import (
 
 
 async def duty(part: str, kind: str, place: Run) -> None:
-    """Publish 100 times a second, or read that, as long as each line of stdin says."""
+    """Publish 100 times a second, or read that, for as long as each line of stdin says."""
     count = 0
 
     def take(_: object = None) -> None:
@@ -65,7 +65,7 @@ def silence() -> Iterator[None]:
 async def socket_duty(
     part: str, place: Run, take: Callable[..., None], stack: AsyncExitStack
 ) -> Beat:
-    """Return the floor: a timer of the loop, and a bare Unix socket."""
+    """Return the lower bound: a timer of the loop, and a bare Unix socket."""
     loop = asyncio.get_running_loop()
 
     class Reader(asyncio.Protocol):
@@ -99,7 +99,7 @@ async def socket_duty(
 async def node_duty(
     part: str, kind: str, place: Run, take: Callable[..., None], stack: AsyncExitStack
 ) -> Beat:
-    """Return what a node does: with all that a node has of its own, as users have it."""
+    """Return the cost of a node with everything that users' nodes have."""
     link = kind == OVER_LINK
     context = await stack.enter_async_context(place.context(3 if link else 2, link=link))
     node = await stack.enter_async_context(Node(part, context=context))
@@ -125,7 +125,7 @@ async def node_duty(
 
 
 async def duties(place: Run, plan: Plan) -> list[dict[str, Any]]:
-    """Return what share of a core publishers and readers take, in turns."""
+    """Return the share of a core that publishers and readers take, in turns."""
     found: dict[str, list[tuple[Any, Any]]] = {}
     async with AsyncExitStack() as stack:
 

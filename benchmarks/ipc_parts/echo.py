@@ -29,7 +29,7 @@ class SocketEcho(asyncio.Protocol):
     """The other end."""
 
     def connection_made(self, transport: Any) -> None:
-        """Send back what comes."""
+        """Send back whatever arrives."""
         self.write = transport.write
 
     def data_received(self, data: bytes) -> None:
@@ -47,7 +47,7 @@ class SocketThrow(SocketEcho):
 
 
 class MemoryEcho(SocketEcho):
-    """The other end for memory that both have mapped."""
+    """The other end for memory mapped by both."""
 
     def __init__(self, buffer: mmap.mmap) -> None:
         self._memory = buffer
@@ -93,7 +93,7 @@ async def echo(place: Run) -> None:
 
 
 def answer_all(node: Node) -> None:
-    """Make what answers the balls, calls, images and bursts of the other process."""
+    """Create the objects that answer the balls, calls, images and bursts of the other process."""
     pongs = node.create_publisher(String, "pong", 10)
     node.create_subscription(String, "ping", pongs.publish, 10)
     seen = node.create_publisher(Int32, "seen", 10)

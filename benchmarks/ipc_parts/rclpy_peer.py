@@ -14,7 +14,7 @@ from benchmarks.ipc_parts.common import RCLPY, TEXT, Child, Run, child
 from benchmarks.ipc_parts.round_trips import Player
 
 RCLPY_S: Final = 600.0
-"""Longer than a measurement takes, which has a limit of its own."""
+"""Longer than a measurement, which has its own limit."""
 
 
 class RclpyBall:
@@ -24,7 +24,7 @@ class RclpyBall:
         self._player = player
 
     async def play(self, count: int, pause_s: float) -> list[int]:
-        """Return the times of so many round trips in nanoseconds, with a sleep before each."""
+        """Return the times of some round trips in nanoseconds, with a sleep before each."""
         times: list[int] = await self._player.ask(f"{count} {pause_s}")
         return times
 
@@ -33,7 +33,7 @@ def rclpy_process(part: str) -> None:
     """Play, or echo, until stdin is closed."""
     import std_msgs.msg
 
-    import rclpy  # from a ROS installation, as the next ones
+    import rclpy  # from a ROS installation, like the next ones
     from rclpy.experimental.events_executor import (
         EventsExecutor,
     )
@@ -49,7 +49,7 @@ def rclpy_process(part: str) -> None:
         node.create_subscription(std_msgs.msg.String, "rclpy_ping", pongs.publish, 10)
         print('"ready"', flush=True)
         threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
-        # Without a limit it takes a core and calls nothing.
+        # Without a limit it uses a whole core and calls nothing.
         executor.spin_until_future_complete(Future(), timeout_sec=RCLPY_S)
         return
     pings = node.create_publisher(std_msgs.msg.String, "rclpy_ping", 10)
@@ -103,7 +103,7 @@ def has_rclpy() -> bool:
 
 
 async def rclpy_ball(place: Run, stack: AsyncExitStack) -> dict[str, Player]:
-    """Return rclpy's ball, where rclpy is installed."""
+    """Return rclpy's ball, if rclpy is installed."""
     if not has_rclpy():
         return {}
     await stack.enter_async_context(child("rclpy-echo", place))

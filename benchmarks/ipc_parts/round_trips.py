@@ -18,11 +18,11 @@ class Player(Protocol):
     """One route, there and back."""
 
     async def play(self, count: int, pause_s: float) -> list[int]:
-        """Return the times of so many round trips in nanoseconds, with a sleep before each."""
+        """Return the times of some round trips in nanoseconds, with a sleep before each."""
 
 
 class Ball:
-    """Callbacks on both sides: `send` sends, and what receives the answer calls `back`."""
+    """Callbacks on both sides: `send` sends, and the receiver of the answer calls `back`."""
 
     send: Callable[[], object]
 
@@ -33,7 +33,7 @@ class Ball:
         self._done: asyncio.Future[None] | None = None
 
     def back(self) -> None:
-        """Record one round trip, and begin the next."""
+        """Record one round trip, and start the next."""
         self._times.append(time.perf_counter_ns() - self._began_ns)
         self._left -= 1
         if self._left:
@@ -53,7 +53,7 @@ class Ball:
         await self._done
 
     async def play(self, count: int, pause_s: float) -> list[int]:
-        """Return the times of so many round trips in nanoseconds, with a sleep before each."""
+        """Return the times of some round trips in nanoseconds, with a sleep before each."""
         self._times = []
         if not pause_s:
             await self._go(count)
@@ -65,13 +65,13 @@ class Ball:
 
 
 class Caller:
-    """One coroutine that awaits one answer after the other."""
+    """One coroutine that awaits one answer after another."""
 
     def __init__(self, call: Callable[[], Awaitable[object]]) -> None:
         self._call = call
 
     async def play(self, count: int, pause_s: float) -> list[int]:
-        """Return the times of so many calls in nanoseconds, with a sleep before each."""
+        """Return the times of some calls in nanoseconds, with a sleep before each."""
         times = []
         for _ in range(count):
             if pause_s:
@@ -102,7 +102,7 @@ class SocketAsk(asyncio.Protocol):
         self._write = transport.write
 
     def ask(self) -> asyncio.Future[None]:
-        """Send, and return what the answer ends."""
+        """Send, and return a future for the answer."""
         self._answer: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._write(bytes(SIZE))
         return self._answer
@@ -134,7 +134,7 @@ class ImageBall(Ball):
 
 
 class MemoryBall(SocketBall):
-    """Bare memory that both have mapped, and a bare Unix socket."""
+    """Bare memory mapped by both, and a bare Unix socket."""
 
     def __init__(self, buffer: mmap.mmap) -> None:
         super().__init__()
@@ -142,7 +142,7 @@ class MemoryBall(SocketBall):
         self._data = bytes([1]) * IMAGE_BYTES
 
     def connection_made(self, transport: Any) -> None:
-        """Copy and say so."""
+        """Copy the data, and send a notification."""
 
         def send() -> None:
             self._memory[:] = self._data

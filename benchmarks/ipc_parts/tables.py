@@ -1,4 +1,4 @@
-"""What the ipc benchmark prints."""
+"""The printed tables of the ipc benchmark."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from benchmarks.ipc_parts.common import (
 
 
 def targets(loop: str, tables: dict[str, list[dict[str, Any]]]) -> list[tuple[str, ...]]:
-    """Return a line for each target of one loop: what, figure, target, met or missed, the floor."""
+    """Return a line per target of one loop: name, figure, target, met or missed, lower bound."""
     trips = [one for one in tables["round_trips"] if one["loop"] == loop]
     found = {(one["cores"], one["what"], one["speed"]): one for one in trips}
     bursts = {o["what"]: o for o in tables["bursts"] if o["loop"] == loop}

@@ -77,7 +77,7 @@ class Ends:
         self._blocks.write(Block(data=block))
 
     def take(self) -> Iterator[str]:
-        """Yield the words that have come, and "" for each block."""
+        """Yield the words that have arrived, and "" for each block."""
         for sample in self._word_reader.take(1000):
             yield sample.data
         for _ in self._block_reader.take(10):

@@ -1,7 +1,7 @@
-"""The peers: each sends a word or a block to another process, and says what has come.
+"""The peers: each sends a word or a block to another process, and reports what arrives.
 
-What is measured is the same for all of them, and is in `stations.py`. A peer whose modules are not
-installed raises `ImportError` when it is opened.
+The measurements are the same for all of them, and are in `stations.py`. A peer whose modules are
+not installed raises `ImportError` when it is opened.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Peer(ABC):
 
     @abstractmethod
     def open(self) -> None:
-        """Begin; return when the other end has been found."""
+        """Start; return when the other end has been found."""
 
     @abstractmethod
     def say(self, word: str) -> None:
@@ -53,10 +53,10 @@ class Peer(ABC):
 
     @abstractmethod
     def run(self, until: Callable[[], bool]) -> None:
-        """Run callbacks until `until`, which is asked after each of them, or `wake`, is true."""
+        """Run callbacks until `until`, which is called after each of them, or `wake`, is true."""
 
     def soon(self, call: Callable[[], object]) -> None:
-        """Call it, within the event loop if there is one."""
+        """Call a function, within the event loop if there is one."""
         call()
 
     @abstractmethod
@@ -69,14 +69,14 @@ class Peer(ABC):
 
     @abstractmethod
     def every(self, seconds: float, call: Callable[[], object]) -> Callable[[], object]:
-        """Call periodically; return what ends it."""
+        """Call periodically; return a function that ends it."""
 
     def call(self) -> Any:
-        """Return something to await: the answer of a service of the other end."""
+        """Return an awaitable answer of a service at the other end."""
         raise NotImplementedError
 
     def calls_per_s(self, count: int) -> float:
-        """Return how many calls a second one caller makes."""
+        """Return how many calls per second one caller makes."""
         raise NotImplementedError
 
 
@@ -84,7 +84,7 @@ class LoopPeer(Peer):
     """A peer on an asyncio event loop."""
 
     def open(self) -> None:
-        """Begin on a new event loop."""
+        """Start on a new event loop."""
         factory = None
         if self.loop_name == "uvloop":
             import uvloop
@@ -97,7 +97,7 @@ class LoopPeer(Peer):
 
     @abstractmethod
     async def begin(self) -> None:
-        """Do `open` in the loop."""
+        """Do the work of `open` in the loop."""
 
     def run(self, until: Callable[[], bool]) -> None:
         """Run the loop."""
@@ -132,7 +132,7 @@ class LoopPeer(Peer):
         return lambda: handle.cancel()  # noqa: PLW0108  # of the latest one
 
     def calls_per_s(self, count: int) -> float:
-        """Return how many calls a second one coroutine makes."""
+        """Return how many calls per second one coroutine makes."""
 
         async def caller() -> float:
             began = time.perf_counter()
@@ -158,7 +158,7 @@ class Queue(LoopPeer):
         ]
 
     async def read(self, queue: asyncio.Queue[str], take: Callable[[str], object]) -> None:
-        """Hand over what comes."""
+        """Pass on what arrives."""
         while True:
             take(await queue.get())
 
@@ -187,7 +187,7 @@ class Socket(LoopPeer, asyncio.Protocol):
         transport.set_write_buffer_limits(1 << 26)
 
     def data_received(self, data: bytes) -> None:
-        """Cut it into messages."""
+        """Split it into messages."""
         pieces = self.rest_of
         pieces += data
         begin, end = 0, len(pieces)
@@ -283,7 +283,7 @@ class Zenoh(LoopPeer):
     """zenoh-python, with one `call_soon_threadsafe` for each message."""
 
     async def begin(self) -> None:
-        """Open a session that is linked to the other one only."""
+        """Open a session that is linked only to the other one."""
         import zenoh
 
         config = zenoh.Config()
@@ -315,7 +315,7 @@ class Zenoh(LoopPeer):
         )
 
     def take(self, sample: Any) -> None:
-        """Hand it over."""
+        """Pass it on."""
         data = sample.payload.to_bytes()
         self.hear(data.decode() if len(data) < 100 else "")
 
@@ -377,7 +377,7 @@ class CycloneDds(LoopPeer):
     """cyclonedds-python: a listener in its thread, and one `call_soon_threadsafe` for each call."""
 
     async def begin(self) -> None:
-        """Make writers and readers of this host's loopback."""
+        """Create writers and readers on this host's loopback."""
         from benchmarks.peer_parts import dds
 
         self.ends = dds.Ends(self.port, self.says, self.hears, self.arrived, ROOM)
@@ -385,11 +385,11 @@ class CycloneDds(LoopPeer):
             await asyncio.sleep(0.05)
 
     def arrived(self) -> None:
-        """Take what has arrived, in the loop; called in a thread of DDS."""
+        """Process arrivals in the loop; called in a thread of DDS."""
         self.loop.call_soon_threadsafe(self.take)
 
     def take(self) -> None:
-        """Hand over what has arrived."""
+        """Pass on arrivals."""
         for word in self.ends.take():
             self.hear(word)
 
@@ -403,7 +403,7 @@ class CycloneDds(LoopPeer):
 
 
 class Rclpy(Peer):
-    """rclpy with its default executor, on the middleware that is set up there."""
+    """rclpy with its default executor, on the configured middleware."""
 
     events = False
 
@@ -448,7 +448,7 @@ class Rclpy(Peer):
             time.sleep(0.05)
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Spin. Without a limit, the events executor takes a core and calls nothing."""
+        """Spin. Without a limit, the events executor takes a whole core and calls nothing."""
         if not until():
             self.done = self.Future()
             self.executor.spin_until_future_complete(self.done, timeout_sec=600)
@@ -479,7 +479,7 @@ class Rclpy(Peer):
         self.blocks.publish(self.Block(data=array.array("B", block)))
 
     def calls_per_s(self, count: int) -> float:
-        """Return how many calls a second are answered, one after the other."""
+        """Return how many calls per second are answered, one after another."""
         began = time.perf_counter()
         for _ in range(count):
             future = self.client.call_async(self.Add.Request())
@@ -520,4 +520,4 @@ MODULES: Final = {
     "rclpy, default executor": "rclpy.executors, std_msgs.msg",
     "rclpy, events executor": "rclpy.experimental.events_executor, std_msgs.msg",
 }
-"""What a program of each peer imports."""
+"""The modules that a program of each peer imports."""

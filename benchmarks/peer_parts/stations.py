@@ -17,12 +17,12 @@ __all__ = ["BURST", "station"]
 
 BURST: Final = 10_000
 PERIOD_S: Final = 0.01
-SILENCE_S: Final = 1.0  # after which the rest of a burst is lost
+SILENCE_S: Final = 1.0  # after which the rest of a burst counts as lost
 ASK, BEGIN, DROP, ANSWER, PIECE = (f"{letter:<23}" for letter in "abdep")  # 32 bytes of CDR
 
 
 class Measuring:
-    """The end that measures; each line of stdin is a question, answered in JSON."""
+    """The measuring end; each line of stdin is a question, answered in JSON."""
 
     def __init__(self, peer: Peer) -> None:
         self._peer = peer
@@ -74,7 +74,7 @@ class Measuring:
         return statistics.median(self._times) / 1e3
 
     def burst(self) -> float:
-        """Return how many messages of a burst arrive in a second; negative if some are lost."""
+        """Return a burst's rate of arrival, in messages per second; negative if some are lost."""
         self._arrived = 0
         peer = self._peer
         peer.soon(lambda: throw(peer) if peer.alone else peer.say(BEGIN))
@@ -87,7 +87,7 @@ class Measuring:
         return rate if self._arrived == BURST else -rate
 
     def duty(self, seconds: float) -> int:
-        """Send 100 words a second, which are dropped at the other end; return how many."""
+        """Send 100 words per second, which are dropped at the other end; return their number."""
         count = 0
 
         def say() -> None:
@@ -126,7 +126,7 @@ def say_ready(text: str = "ready") -> None:
 
 
 def answering(peer: Peer) -> None:
-    """Answer what comes, until stdin is closed."""
+    """Answer whatever arrives, until stdin is closed."""
 
     def hear(word: str) -> None:
         if word == BEGIN:
@@ -153,7 +153,7 @@ def hearing(peer: Peer) -> None:
 
 
 def station(name: str, side: str, place: tuple[str, int], loop_name: str) -> None:
-    """Be one end of a peer."""
+    """Run one end of a peer."""
     kind = PEERS[name]
     if side == "hear":
         hearing(kind("echo", place, loop_name))

@@ -1,6 +1,6 @@
-"""One other process of `scale.py`: subscriptions, or nodes that count the nodes they know.
+"""Another process of `scale.py`: subscriptions, or nodes that count the nodes they know.
 
-It reads commands from its standard input, one a line, and answers each with one line of JSON.
+It reads commands from its standard input, one per line, and answers each with one line of JSON.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ EVERY = 10
 
 
 POLL_S = 0.1
-"""How often a process looks whether it has met all others."""
+"""Interval at which a process checks whether it has met all others."""
 
 
 async def pause(number: int) -> None:
@@ -30,10 +30,11 @@ async def pause(number: int) -> None:
 
 
 async def meet(nodes: list[Node], wanted: int, wait_s: float) -> list[float]:
-    """Wait until all nodes know so many, and are linked with all of them but themselves.
+    """Wait until all nodes know a number of others, and are linked with all of them but themselves.
 
-    Here and not in the process that asks, as a hundred that are asked again and again are busy with
-    that. Return what the least informed node has found, the CPU time, and when that was.
+    This is done here rather than in the asking process, because a hundred processes that are asked
+    repeatedly would be busy with that. Return what the least informed node has found, the CPU time,
+    and when that was.
     """
     began = time.monotonic()
     while True:
@@ -51,7 +52,7 @@ def found(node: Node) -> list[int]:
 
 
 async def serve(name: str, contexts: int, *, link: bool) -> None:
-    """Do what the commands say, in so many contexts; endpoints are in the first one."""
+    """Execute the commands, in a number of contexts; endpoints are in the first one."""
     loop = asyncio.get_running_loop()
     async with AsyncExitStack() as stack:
         nodes = []
@@ -93,7 +94,7 @@ def threads() -> int:
 
 
 def raise_limit() -> None:
-    """Allow as many descriptors as the system does: a context has two for each other one."""
+    """Raise the limit of descriptors as far as allowed: a context has two for each other one."""
     try:
         import resource
     except ImportError:  # Windows

@@ -35,7 +35,7 @@ CHANGES: Final = 100
 """How many changes of the graph are measured."""
 
 WAIT_S: Final = 60.0
-"""How long everything may take to be known before a row is incomplete."""
+"""How long everything may take to be found before a row is incomplete."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class CrowdRow:
 
 @dataclass(frozen=True)
 class WaitersRow:
-    """What CPU a change of the graph costs while clients wait for services of other names."""
+    """How much CPU a change of the graph costs while clients wait for services of other names."""
 
     waiters: int
     change_cpu_us: float
@@ -87,8 +87,8 @@ class WaitersRow:
 class ProcessesRow:
     """How long many contexts take whose processes start at once.
 
-    From the start of the last one until each knows the nodes of all, and is linked with all. CPU is
-    that of all of them since their start, for each; their start itself is most of it.
+    Measured from the start of the last one until each knows the nodes of all, and is linked with
+    all. CPU is that of all of them since their start, for each; their start itself is most of it.
     """
 
     processes: int
@@ -119,7 +119,7 @@ class Other:
 
 @asynccontextmanager
 async def other(name: str, route: str, contexts: int = 1) -> AsyncIterator[Other]:
-    """Run another process meanwhile."""
+    """Run another process within the block."""
     program = str(Path(__file__).with_name("others.py"))
     process = await asyncio.create_subprocess_exec(
         sys.executable, program, name, route, str(contexts),
@@ -152,7 +152,7 @@ def lacking(what: str, found: float, wanted: int) -> str:
 
 
 async def listed_topics(count: int) -> str:
-    """Return what `aionode topic list`, started now, lacks."""
+    """Return what a newly started `aionode topic list` lacks."""
     listing = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "aionode", "topic", "list",
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
@@ -244,12 +244,12 @@ async def measure_crowd(route: str, count: int, before: CrowdRow | None) -> Crow
 
 
 def trigger(_: Any, response: Any) -> Any:
-    """Answer with what there is."""
+    """Answer immediately."""
     return response
 
 
 async def measure_waiters(count: int, before: WaitersRow | None) -> WaitersRow:
-    """Return what a change of the graph costs beside `count` clients that wait."""
+    """Return the cost of a change of the graph with `count` waiting clients."""
     async with Context(transport="local") as context, Node("n", context=context) as node:
         clients = [node.create_client(Trigger, f"wanted_{number}") for number in range(count)]
         async with asyncio.TaskGroup() as tasks:

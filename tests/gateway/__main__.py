@@ -45,13 +45,13 @@ def cases(seconds: float, times: int) -> dict[str, Case]:
 
 
 def line_of(row: Row) -> str:
-    """Return a row as a line of the table."""
+    """Format a row as a line of the table."""
     held = f"no: {'; '.join(row.problems)}" if row.problems else "yes"
     return f"| {row.what} | {held} | {row.figures} |"
 
 
 def run(name: str, case: Case) -> Row:
-    """Return what came of a case; one that fails holds up no other."""
+    """Return the outcome of a case; a failing case does not stop the others."""
     try:
         return asyncio.run(case())  # type: ignore[arg-type]  # a coroutine
     except Exception as error:  # noqa: BLE001  # it is told

@@ -1,4 +1,4 @@
-"""A robot without network, and clients of its gateway without sockets."""
+"""A robot without a network, and clients of its gateway without sockets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Make = Callable[..., Node]
 
 @pytest.fixture
 async def node(node_factory: Make) -> Node:
-    """Return a node of the robot, which is running."""
+    """Return a running node of the robot."""
     node = node_factory("robot_node")
     await settle()
     return node
@@ -26,7 +26,7 @@ async def node(node_factory: Make) -> Node:
 
 @pytest.fixture
 async def robot(node: Node, node_factory: Make) -> AsyncIterator[Robot]:
-    """Yield what the sessions of a gateway share."""
+    """Yield the state shared by the sessions of a gateway."""
     gateway = node_factory("aionode_gateway")
     await settle()
     async with robot_of(gateway) as robot:
@@ -35,7 +35,7 @@ async def robot(node: Node, node_factory: Make) -> AsyncIterator[Robot]:
 
 @pytest.fixture
 async def client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
-    """Yield a client that has asked to be told of errors."""
+    """Yield a client that has requested errors."""
     async with rosbridge_client(robot) as client:
         client.send("set_level", level="error")
         yield client
@@ -43,7 +43,7 @@ async def client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
 
 @pytest.fixture
 async def bench() -> AsyncIterator[Bench]:
-    """Yield a gateway without a server that allows everything, at a time that a test sets."""
+    """Yield a gateway without a server that allows everything, with time set by the test."""
     async with bench_of_gateway() as bench:
         yield bench
 
@@ -57,5 +57,5 @@ async def assisted(request: pytest.FixtureRequest) -> AsyncIterator[mcp_bench.Be
 
 @pytest.fixture(params=["auto", "legacy"], ids=["2026-07-28", "2025-11-25"])
 def era(request: pytest.FixtureRequest) -> str:
-    """Return how clients of MCP connect: by the newest revision, or by an older one."""
+    """Return how MCP clients connect: by the newest revision, or by an older one."""
     return str(request.param)

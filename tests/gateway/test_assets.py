@@ -1,4 +1,4 @@
-"""Files of packages for clients: what the policy allows, and nothing beside it."""
+"""Files of packages for clients: only what the policy allows."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ async def web(gateway: Gateway) -> AsyncIterator[httpx.AsyncClient]:
 
 
 async def fetched(gateway: Gateway, *uris: str) -> list[tuple[int, str, bytes]]:
-    """Return what Foxglove is answered: the status, the error and the content of each file."""
+    """Return Foxglove's answers: the status, error and content of each file."""
     answers = []
     address = f"ws://127.0.0.1:{gateway.port}"
     async with connect(address, subprotocols=["foxglove.sdk.v1"], max_size=None) as socket:  # type: ignore[list-item]
@@ -87,7 +87,7 @@ async def fetched(gateway: Gateway, *uris: str) -> list[tuple[int, str, bytes]]:
 
 
 async def test_a_mesh_is_read_over_http(web: httpx.AsyncClient) -> None:
-    """As bytes: a page among the files of a package must not run as one of the gateway's."""
+    """As bytes: a page among a package's files must not run as one of the gateway's."""
     answer = await web.get("/assets/rover/meshes/base%20link.stl")
 
     assert (answer.status_code, answer.content) == (200, MESH)
@@ -96,7 +96,7 @@ async def test_a_mesh_is_read_over_http(web: httpx.AsyncClient) -> None:
 
 
 async def test_foxglove_reads_a_mesh(gateway: Gateway) -> None:
-    """By its package:// address; an error is answered for the request, and not by a status."""
+    """By its package:// address; errors answer the request rather than appear as a status."""
     good, gone = await fetched(
         gateway, "package://rover/meshes/base%20link.stl", "package://rover/meshes/no.stl"
     )
@@ -128,7 +128,7 @@ async def test_foxglove_reads_a_mesh(gateway: Gateway) -> None:
     ],
 )
 async def test_nothing_else_is_served(gateway: Gateway, path: str, status: int) -> None:
-    """Written as it is on the wire: a client of HTTP would resolve the dots itself."""
+    """Written exactly as on the wire, since an HTTP client would resolve the dots itself."""
     reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
     request = (
         f"GET /assets/{path.replace(' ', '%20')} HTTP/1.1\r\nHost: 127.0.0.1:{gateway.port}\r\n"
@@ -144,7 +144,7 @@ async def test_nothing_else_is_served(gateway: Gateway, path: str, status: int) 
 async def test_a_link_to_a_file_of_something_else_is_not_followed(
     web: httpx.AsyncClient, share: Path, tmp_path: Path
 ) -> None:
-    """Only one to the sources of the same package is, as ``--symlink-install`` leaves them."""
+    """Only links to sources of the same package are, as left by ``--symlink-install``."""
     source = tmp_path / "src/rover"
     source.mkdir(parents=True)
     (source / "package.xml").write_text("<package><name>rover</name></package>")
@@ -161,7 +161,7 @@ async def test_a_link_to_a_file_of_something_else_is_not_followed(
 async def test_refused_files_are_counted_and_logged(
     gateway: Gateway, web: httpx.AsyncClient, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Over each way in, with the reason of the rule."""
+    """For each protocol, with the reason of the rule."""
     answer = await web.get("/assets/rover/meshes/private/a.stl")
     (told,) = await fetched(gateway, "package://rover/config.yaml")
 
@@ -175,7 +175,7 @@ async def test_refused_files_are_counted_and_logged(
 async def test_a_gateway_without_a_policy_serves_the_packages_it_is_given(
     node: Node, share: Path
 ) -> None:
-    """None by default, and the refusal says how."""
+    """None by default, and the refusal says how to serve them."""
     async with (
         Gateway(node, port=0) as plain,
         Gateway(node, Policy.default(assets=["rover"]), port=0) as given,
@@ -191,7 +191,7 @@ async def test_a_gateway_without_a_policy_serves_the_packages_it_is_given(
 
 
 def test_a_rule_for_files_shows_no_topic() -> None:
-    """A topic may have the name of a package."""
+    """A topic may have the same name as a package."""
     policy = Policy.parse('[[who]]\nname="a"\nloopback=true\n[[allow]]\nasset="/rover/**"')
 
     decision = policy.decide(Identity("a"), "see", "/rover/scan", "sensor_msgs/msg/LaserScan")
@@ -200,7 +200,7 @@ def test_a_rule_for_files_shows_no_topic() -> None:
 
 @given(st.text(max_size=30))
 def test_any_address_is_a_name_or_refused(text: str) -> None:
-    """Foxglove sends whatever a description of a robot has."""
+    """Foxglove sends whatever a robot description contains."""
     try:
         name = asset_of_uri(text)
     except MessageError:

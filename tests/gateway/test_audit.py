@@ -1,4 +1,4 @@
-"""The audit log: what a client sends cannot forge it, fill it, or hide what others do."""
+"""The audit log: clients cannot forge it, fill it, or hide what others do."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OTHER = Identity("other", address="10.0.0.2")
     ["a\nb", "\r", "\x00", "\x1b[31m", "\x7f", "\x9b31m", "\u202egnp.exe", "\u2028", "\U000e0041"],
 )
 async def test_a_line_has_no_character_that_a_terminal_obeys(bench: Bench, text: str) -> None:
-    """Such a text is in the line all the same, escaped; a line is one line."""
+    """The text is in the line nevertheless, escaped; a line remains one line."""
     bench.robot.audit.note(GUEST, "call", f"/{text}", arguments={"a": text}, result=text)
     await settle()
     (line,) = bench.lines
@@ -38,10 +38,10 @@ async def test_a_line_has_no_character_that_a_terminal_obeys(bench: Bench, text:
 
 
 class Endless(list[Any]):
-    """A list so long that nobody may go through it."""
+    """A list so long that nobody may iterate over it."""
 
     def __iter__(self) -> Iterator[Any]:
-        """Yield what is in it."""
+        """Yield its items."""
         for number in range(10_000):
             assert number < MOST_TEXT
             yield 7
@@ -72,19 +72,19 @@ for _ in range(900):
     ids=lambda arguments: type(arguments).__name__,
 )
 def test_what_is_written_of_arguments_does_not_grow_with_them(arguments: Any) -> None:
-    """Nor does the time that it takes: a message may have a million numbers."""
+    """Neither does the time: a message may contain a million numbers."""
     assert 1 < len(shortened(arguments)) <= MOST_TEXT
 
 
 def test_arguments_are_written_as_messages_are_printed() -> None:
-    """With all their fields, in short."""
+    """With all their fields, shortened."""
     message = Twist(linear=Vector3(x=0.5))
     assert shortened(message) == repr(message)
     assert shortened({"speed": 1.5, "names": ["a"]}) == "{'speed': 1.5, 'names': ['a']}"
 
 
 async def test_a_client_that_asks_in_vain_hides_no_other(bench: Bench) -> None:
-    """Each has a number of refusals that are written a second."""
+    """The number of logged refusals per second is limited for each client."""
     for _ in range(3 * REFUSALS_PER_SEC):
         bench.robot.audit.note(GUEST, "publish", "/noise", result="refused", code="not_allowed")
     bench.robot.audit.note(OTHER, "publish", "/cmd_vel", result="refused", code="not_allowed")
@@ -94,7 +94,7 @@ async def test_a_client_that_asks_in_vain_hides_no_other(bench: Bench) -> None:
 
 
 async def test_a_simulation_that_pauses_does_not_end_the_log(bench: Bench) -> None:
-    """Its clock stands still; lines have the time of the machine."""
+    """The simulated clock stands still; lines use the time of the machine."""
     bench.robot.node.set_parameters([Parameter("use_sim_time", value=True)])
     for _ in range(2):
         for _ in range(REFUSALS_PER_SEC):
@@ -106,7 +106,7 @@ async def test_a_simulation_that_pauses_does_not_end_the_log(bench: Bench) -> No
 
 
 def test_only_its_owner_can_read_the_file(tmp_path: Path) -> None:
-    """From its first line on; a file that is there keeps its rights."""
+    """From its first line on; an existing file keeps its permissions."""
     path = tmp_path / "audit.jsonl"
     append(path, "a\n")
     append(path, "b\n")

@@ -1,4 +1,4 @@
-"""One client beside another: none takes the place of others, and no page speaks for its reader."""
+"""Several clients: none can take the place of others, and no page can act for its reader."""
 
 from __future__ import annotations
 
@@ -49,25 +49,25 @@ BROWSER = {"user-agent": "Mozilla/5.0 (X11; Linux x86_64)"}
 
 
 async def open_websocket(stack: AsyncExitStack, gateway: Gateway) -> None:
-    """Keep a WebSocket."""
+    """Keep a WebSocket open."""
     made = connect(address(gateway), additional_headers=VIEWER, proxy=None)
     await stack.enter_async_context(made)
 
 
 async def open_poll(stack: AsyncExitStack, gateway: Gateway) -> None:
-    """Keep a request that waits for a message."""
+    """Keep a request open that waits for a message."""
     await open_request(stack, gateway, "timeout_sec=3600", {})
 
 
 async def open_events(stack: AsyncExitStack, gateway: Gateway) -> None:
-    """Keep a stream of events."""
+    """Keep a stream of events open."""
     await open_request(stack, gateway, "", {"accept": "text/event-stream"})
 
 
 async def open_request(
     stack: AsyncExitStack, gateway: Gateway, query: str, headers: dict[str, str]
 ) -> None:
-    """Keep a request."""
+    """Keep a request open."""
     client = await stack.enter_async_context(httpx.AsyncClient(timeout=None))  # noqa: S113
 
     async def wait() -> None:
@@ -84,7 +84,7 @@ WAYS: list[Way] = [open_websocket, open_poll, open_events]
 
 
 def count(gateway: Gateway, name: str) -> int:
-    """Return how many clients of an identity stay."""
+    """Return how many clients of an identity remain."""
     return sum(
         each.identity.name == name and not each.ended.is_set() for each in sessions_of(gateway)
     )
@@ -92,7 +92,7 @@ def count(gateway: Gateway, name: str) -> int:
 
 @pytest.mark.parametrize("way", WAYS)
 async def test_a_viewer_with_all_places_leaves_one_to_another_identity(way: Way) -> None:
-    """Or a viewer could keep out whoever has to stop the robot, for as long as it likes."""
+    """Otherwise a viewer could keep out the person who has to stop the robot."""
     async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:
         for _ in range(4):
             await way(stack, gateway)
@@ -110,7 +110,7 @@ async def test_a_viewer_with_all_places_leaves_one_to_another_identity(way: Way)
 
 
 async def test_who_has_to_leave_is_told_why() -> None:
-    """The newest leaves: what has run for long goes on."""
+    """The newest client leaves: long-running ones continue."""
     async with (
         serving(Policy.parse(POLICY)) as gateway,
         AsyncExitStack() as stack,
@@ -134,7 +134,7 @@ async def test_who_has_to_leave_is_told_why() -> None:
 
 
 async def test_who_keeps_unread_what_is_public_keeps_nobody_out() -> None:
-    """A stranger needs no token for the page, so there could be any number of its connections."""
+    """A stranger needs no token for the page, so it could open any number of connections."""
     async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:
         request = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 2000
         for _ in range(30):
@@ -149,9 +149,9 @@ async def test_who_keeps_unread_what_is_public_keeps_nobody_out() -> None:
 async def test_a_websocket_that_makes_room_ends_as_others_do(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """One whose session has ended stays until its client says goodbye, too, which this one won't.
+    """Without a session it stays open until its client sends a close frame, which never comes.
 
-    It is the oldest without a session then, and so the first that is closed.
+    It is then the oldest one without a session, and so the first to be closed.
     """
     viewer = "Authorization: Bearer viewer\r\n"
     async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:
@@ -186,7 +186,7 @@ async def test_a_page_of_another_origin_cannot_lock_out_who_reads_it(
 
 
 async def test_nor_can_a_page_whose_browser_does_not_name_it() -> None:
-    """Over plain HTTP to another machine, a browser does not say which page asks for an image."""
+    """Over plain HTTP to another machine, browsers do not reveal which page requests an image."""
     async with serving(Policy.parse(POLICY)) as gateway:
         for number in range(20):
             await get(gateway, f"/topics/x.jpeg?token={number}", BROWSER)

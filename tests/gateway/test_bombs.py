@@ -1,4 +1,4 @@
-"""Small requests that are made to cost much: refused by a clear answer, and the loop goes on."""
+"""Small requests designed to be costly: refused with a clear answer while the loop runs on."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from tests.support.gateway_server import busiest_turn, http_client, raw_connect,
 from tests.support.waiting import until
 
 SIZE = 990_000
-"""As much as fits into a frame."""
+"""As much as fits in a frame."""
 
 TURN_SEC = 0.1
-"""How long a turn of the loop may take on a slow machine; here, it is less than 20 ms."""
+"""The longest loop iteration on a slow machine; here it takes less than 20 ms."""
 
 MARKERS = "visualization_msgs/MarkerArray"
 POSES = "geometry_msgs/PoseArray"
@@ -35,7 +35,7 @@ NUMBERS = "std_msgs/UInt8MultiArray"
 NAMES = "sensor_msgs/JointState"
 
 DEEP = "recursion|needs a"
-"""Python 3.13 reads so deep a value, which then is no message."""
+"""Python 3.13 can parse a value nested this deep, which then is not a message."""
 
 REFUSED = {
     "lists": (POSES, "[" + "[]," * (SIZE // 3) + "[]]", "objects and lists"),
@@ -61,7 +61,7 @@ REFUSED = {
     ),
     "a huge name": (NAMES, '{"' + "x" * SIZE + '":1}', "no such field"),
 }
-"""By what they are: the type, the values in JSON, and a pattern of the answer."""
+"""By kind: the type, the values in JSON, and a pattern of the answer."""
 
 TAKEN = {
     "bytes as numbers": (NUMBERS, '{"data":[' + "1," * (SIZE // 2) + "1]}"),
@@ -69,7 +69,7 @@ TAKEN = {
     "many poses": (POSES, '{"poses":[' + "{}," * 4_900 + "{}]}"),
     "brackets in a text": ("std_msgs/String", '{"data":"' + "[" * SIZE + '"}'),
 }
-"""What is large, and yet a message."""
+"""Large, but valid messages."""
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ async def status_of(client: ClientConnection) -> str:
 
 
 async def still_served(client: ClientConnection) -> None:
-    """Wait for the answer to a question behind all else."""
+    """Wait for the answer to a request sent after everything else."""
     await client.send('{"op":"call_service","service":"/rosapi/get_time","id":"still there"}')
     while json.loads(await client.recv()).get("id") != "still there":
         pass
@@ -105,7 +105,7 @@ async def still_served(client: ClientConnection) -> None:
 async def test_a_bomb_for_rosbridge_is_answered(
     gateway: Gateway, name: str, *, as_bytes: bool
 ) -> None:
-    """In frames of text or bytes, both of which are JSON."""
+    """In text or binary frames, both of which contain JSON."""
     type_name, values, words = REFUSED[name]
     frame = publish_op(type_name, values)
     async with raw_connect(gateway, "/", {}, []) as client:
@@ -186,7 +186,7 @@ async def test_a_bomb_for_foxglove_is_answered(gateway: Gateway, encoding: str) 
 
 
 def enumerate_cdr() -> list[tuple[int, bytes]]:
-    """Return the bytes of bombs in CDR, with numbers."""
+    """Return CDR bombs with a number for each."""
     return list(enumerate(FOXGLOVE_CDR.values()))
 
 
@@ -202,7 +202,7 @@ ROSAPI = {
 
 @pytest.mark.parametrize("name", ROSAPI)
 async def test_a_bomb_for_rosapi_is_answered(gateway: Gateway, name: str) -> None:
-    """Its texts may be JSON, names and types."""
+    """Its text fields may contain JSON, names or types."""
     service, args = ROSAPI[name]
     op = {"op": "call_service", "service": f"/rosapi/{service}", "id": "bomb", "args": args}
     async with raw_connect(gateway, "/", {}, []) as client, busiest_turn() as busy:
@@ -222,7 +222,7 @@ CBOR = {
 
 @pytest.mark.parametrize("name", CBOR)
 async def test_cbor_of_clients_is_refused(gateway: Gateway, name: str) -> None:
-    """Clients of rosbridge send JSON, also as bytes: no decoder of CBOR sees what they send."""
+    """Clients of rosbridge send JSON, even in binary frames: no CBOR decoder sees their data."""
     async with raw_connect(gateway, "/", {}, []) as client:
         await client.send('{"op":"set_level","level":"error"}')
         await client.send(CBOR[name])
@@ -230,7 +230,7 @@ async def test_cbor_of_clients_is_refused(gateway: Gateway, name: str) -> None:
 
 
 async def test_a_picture_of_a_client_is_not_inflated(gateway: Gateway) -> None:
-    """Pictures with ops in them go to clients only: 1 MB of one may be a gigabyte."""
+    """Pictures that contain ops are only sent to clients: 1 MB of one may inflate to a gigabyte."""
     bomb = base64.b64encode(zlib.compress(bytes(50_000_000))).decode()
     async with raw_connect(gateway, "/", {}, []) as client:
         await client.send('{"op":"set_level","level":"error"}')
@@ -239,7 +239,7 @@ async def test_a_picture_of_a_client_is_not_inflated(gateway: Gateway) -> None:
 
 
 async def test_frames_are_not_inflated(gateway: Gateway) -> None:
-    """The gateway agrees to no compression of frames, and takes none that comes nevertheless."""
+    """The gateway agrees to no compression of frames, and rejects compressed ones."""
     more = "Sec-WebSocket-Extensions: permessage-deflate\r\n"
     reader, writer, head = await upgraded(gateway, more)
     assert "permessage-deflate" not in head.lower()
@@ -256,7 +256,7 @@ async def test_frames_are_not_inflated(gateway: Gateway) -> None:
 async def test_a_frame_that_announces_too_much_is_refused_at_once(
     gateway: Gateway, size: int
 ) -> None:
-    """Nobody waits for the rest of it, and no room is made."""
+    """The gateway does not wait for the rest, and allocates no memory for it."""
     reader, writer, _ = await upgraded(gateway)
     writer.write(bytes([0x82, 0x80 | 127]) + size.to_bytes(8, "big") + bytes(4) + b"x")
     answer = await reader.read()
@@ -266,7 +266,7 @@ async def test_a_frame_that_announces_too_much_is_refused_at_once(
 
 
 async def test_fragments_that_never_complete_are_bounded(gateway: Gateway) -> None:
-    """In characters and in number: the oldest are forgotten, or the client is told."""
+    """In characters and in number: the oldest are dropped, or the client gets an error."""
     async with raw_connect(gateway, "/", {}, []) as client:
         await client.send('{"op":"set_level","level":"error"}')
         data = "x" * 900_000
@@ -278,7 +278,7 @@ async def test_fragments_that_never_complete_are_bounded(gateway: Gateway) -> No
 
 
 async def test_a_client_that_only_sends_bombs_is_disconnected(gateway: Gateway) -> None:
-    """After a hundred frames that are no ops."""
+    """After a hundred frames that are not valid ops."""
     async with raw_connect(gateway, "/", {}, []) as client:
         for _ in range(101):
             await client.send("[" * 1000)
@@ -298,7 +298,7 @@ async def test_a_client_that_only_sends_bombs_is_disconnected(gateway: Gateway) 
     ],
 )
 def test_brackets_in_texts_are_no_parts(text: str, *, is_taken: bool) -> None:
-    """A text may have any: what counts is what objects are made of."""
+    """A text may contain any brackets: only those of objects and lists count."""
     if is_taken:
         assert decoded(text, 20_000) == json.loads(text)
     else:

@@ -1,6 +1,6 @@
-"""The gateway holds a bounded number of things for its clients, and the policy decides first.
+"""The gateway keeps a bounded number of things for its clients, and the policy decides first.
 
-Also for a client that asks for several things at once, while each of them waits.
+This also holds if a client requests several things at once, while each of them waits.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ async def serve_action(session: Session, number: int) -> None:
 
 
 async def call(session: Session, number: int) -> None:
-    """Call a service, which is there."""
+    """Call a service that exists."""
     await session.call("/add", {"a": number}, type_name=ADD)
 
 
@@ -84,7 +84,7 @@ LIMITS: dict[Do, str] = {
 async def test_several_at_once_do_not_pass_a_limit(
     do: Do, bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each waits for its type, and would find the last place free before that."""
+    """Each waits for its type, and would otherwise find the last place free."""
     bench.node.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
     verbs = ("subscribe", "publish", "call", "advertise")
     allowed = "\n".join(f"{verb} = '/**'" for verb in verbs)
@@ -102,12 +102,12 @@ async def test_several_at_once_do_not_pass_a_limit(
         known.set()
         await settle()
         assert [task.result() for task in asked] == ["done"] * 2 + ["too_many"] * 3
-        if do is call:  # a place that was given back is free
+        if do is call:  # a released place is free again
             assert await outcome(do(session, 9)) == "done"
 
 
 async def outcome(work: Awaitable[Any]) -> str:
-    """Return the code with which something was refused, or that it was done."""
+    """Return the code of a refusal, or that it was done."""
     try:
         await work
     except RefusedError as error:
@@ -116,7 +116,7 @@ async def outcome(work: Awaitable[Any]) -> str:
 
 
 async def test_a_place_is_free_again_after_a_failure(bench: Bench) -> None:
-    """A client that misspells a type has lost nothing."""
+    """A client that misspells a type loses nothing."""
     bench.allow("[limits]\nsubscriptions = 1\nadvertised = 1\n[[allow]]\n"
                 "subscribe = '/**'\npublish = '/**'\nadvertise = '/**'")  # fmt: skip
     async with bench.session() as session:
@@ -135,7 +135,7 @@ async def test_a_place_is_free_again_after_a_failure(bench: Bench) -> None:
 async def test_a_type_is_looked_up_after_the_policy_has_decided(
     do: Do, bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """To look for it imports modules, and asks other nodes."""
+    """Looking for a type imports modules, and asks other nodes."""
     bench.robot.policy = Policy()
     refuse_to_find_types(bench.robot, monkeypatch)
     async with bench.session() as session:
@@ -149,7 +149,7 @@ async def send_goal(session: Session) -> None:
 
 
 def refuse_to_find_types(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have the test fail that looks for a type."""
+    """Make the test fail if a type is looked up."""
 
     async def find(*_: Any) -> Any:
         raise AssertionError
@@ -169,7 +169,7 @@ def refuse_to_find_types(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_an_op_that_is_refused_looks_for_no_type(
     op: dict[str, Any], client: RosbridgeClient, robot: Robot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The same over rosbridge, which also asks the graph which type a topic has."""
+    """The same over rosbridge, which also queries the graph for the type of a topic."""
     robot.policy = Policy()
     refuse_to_find_types(robot, monkeypatch)
     monkeypatch.setattr(client.session.graph, "topics", None)
@@ -178,7 +178,7 @@ async def test_an_op_that_is_refused_looks_for_no_type(
 
 
 async def test_endpoints_that_nobody_uses_are_bounded(bench: Bench) -> None:
-    """A client uses one name after the other: each of its publishers stays for a while."""
+    """A client uses one name after another: each of its publishers stays for a while."""
     shared = Shared(bench.robot.time_base)
     made = []
     for number in range(3 * MOST_UNUSED):
@@ -193,7 +193,7 @@ async def test_endpoints_that_nobody_uses_are_bounded(bench: Bench) -> None:
 
 
 class Entity:
-    """Stands for a publisher."""
+    """A stand-in for a publisher."""
 
     destroyed = False
 
@@ -203,7 +203,7 @@ class Entity:
 
 
 def fragment(data: str, num: int = 0, total: int = 1, message_id: str = "m") -> dict[str, Any]:
-    """Return an op with a part of another one."""
+    """Return an op with a fragment of another op."""
     return {"op": "fragment", "id": message_id, "data": data, "num": num, "total": total}
 
 
@@ -217,19 +217,19 @@ async def test_fragments_make_no_larger_frame_than_the_policy_allows(
 
 
 def test_fragments_count_in_bytes_until_they_are_complete() -> None:
-    """Characters have up to four; what has left, counts no more, also beside what has not."""
+    """Characters have up to four bytes; fragments of complete messages no longer count."""
     store = FragmentStore(1000)
     with pytest.raises(MessageError, match="exceed 1000 bytes"):
         store.add(fragment("\N{ROCKET}" * 300, 0, 2))
     store.add(fragment("never complete", 0, 2, "other"))
     for _ in range(10):
         store.add(fragment("a" * 400, 0, 2))
-        store.add(fragment("a" * 400, 0, 2))  # once more
+        store.add(fragment("a" * 400, 0, 2))  # the same once more
         assert store.add(fragment("b", 1, 2)) == "a" * 400 + "b"
 
 
 async def test_garbage_in_fragments_is_garbage(bench: Bench) -> None:
-    """A client is disconnected that sends only frames which are no ops, in whatever parts."""
+    """A client that sends only invalid ops is disconnected, however they are split."""
     frames = iter(json.dumps(fragment("garbage")) for _ in range(MOST_MALFORMED + 50))
 
     async def sent() -> AsyncIterator[str]:
@@ -245,7 +245,7 @@ async def test_garbage_in_fragments_is_garbage(bench: Bench) -> None:
 async def test_channels_of_foxglove_do_not_pass_their_limit_at_once(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each of them waits in a lane of its own; a number that is in use is no new channel."""
+    """Each of them waits in its own lane; an id in use is not a new channel."""
     monkeypatch.setattr(_foxglove_client, "MOST_CHANNELS", 2)
     find = bench.robot.find_type
 
@@ -268,7 +268,7 @@ async def test_channels_of_foxglove_do_not_pass_their_limit_at_once(
 
 @pytest.mark.parametrize("value", [2**70, [1, "a"], {"a": 1}, [[1]]])
 async def test_a_value_that_no_parameter_has_is_an_answer(bench: Bench, value: Any) -> None:
-    """JSON has numbers of any size: such a client is told, and nobody logs a traceback."""
+    """JSON contains numbers of any size: the client gets an error, and no traceback is logged."""
     bench.node.declare_parameter("speed", 1)
     async with bench.session() as session:
         with pytest.raises(MessageError, match="speed"):
@@ -279,20 +279,20 @@ async def test_a_value_that_no_parameter_has_is_an_answer(bench: Bench, value: A
 async def test_a_value_in_json_that_no_parameter_has_is_an_answer(
     robot: Robot, client: RosbridgeClient, value: str
 ) -> None:
-    """Rosapi has the value as a text of JSON, which may be a bomb."""
+    """Rosapi receives the value as JSON text, which may be a bomb."""
     robot.policy = Policy.default(allow_write=True)  # frames may be larger
     client.session.check_again()
     answer = await client.call("/rosapi/set_param", name="/robot_node:speed", value=value)
     assert answer["values"]["successful"] is False
 
 
-# Questions about the graph
+# Graph queries
 
 
 async def test_a_burst_of_questions_leaves_the_loop_to_others(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each of them walks through the graph: one at a time, and the clients in turn."""
+    """Each query walks through the graph: one at a time, with the clients taking turns."""
     turns, asked = 0, []
 
     async def count_turns() -> None:
@@ -343,7 +343,7 @@ async def test_a_burst_of_questions_leaves_the_loop_to_others(
 async def test_a_text_that_is_no_name_of_a_type_is_sought_nowhere(
     bench: Bench, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """To find similar names takes a second for one of a megabyte, which a client may send."""
+    """Searching names similar to a megabyte of text, which a client may send, takes a second."""
     monkeypatch.setattr(bench.robot.node, "find_type", None)
     async with bench.session() as session:
         with pytest.raises(InterfaceNotFoundError):
@@ -351,7 +351,7 @@ async def test_a_text_that_is_no_name_of_a_type_is_sought_nowhere(
 
 
 async def test_parameters_of_many_nodes_are_listed(bench: Bench) -> None:
-    """Not only of as many as there may be calls at once."""
+    """Not only those of as many nodes as there may be simultaneous calls."""
     bench.allow("[limits]\ncalls = 8\n[[allow]]\nsee = '/**'")
     names = [f"robot_{number}" for number in range(12)]
     async with AsyncExitStack() as stack:
@@ -366,7 +366,7 @@ async def test_parameters_of_many_nodes_are_listed(bench: Bench) -> None:
 
 
 def test_topics_that_a_client_has_left_are_forgotten() -> None:
-    """A client may subscribe with ever new ids: no count of any of them stays."""
+    """A client may subscribe with ever new ids: no counts of them are kept."""
     outbox = Outbox()
     for number in range(10):
         for _ in range(3):
@@ -378,7 +378,7 @@ def test_topics_that_a_client_has_left_are_forgotten() -> None:
 async def test_messages_that_are_kept_for_late_clients_are_bounded_in_bytes(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A camera may ask to keep a hundred pictures; the last one is kept in any case."""
+    """A camera may ask to keep a hundred pictures; the last one is always kept."""
     monkeypatch.setattr(_feed, "MOST_LATCHED_BYTES", 1000)
     latched = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = bench.node.create_publisher(String, "/words", latched)
@@ -396,7 +396,7 @@ async def test_messages_that_are_kept_for_late_clients_are_bounded_in_bytes(
 
 
 async def test_no_client_publishes_to_the_audit_log(bench: Bench) -> None:
-    """Though it may publish to everything else."""
+    """Even though it may publish to everything else."""
     async with bench.session() as session:
         with pytest.raises(RefusedError, match="only the gateway writes it"):
             await session.publish("/gateway/audit", {"data": "{}"}, "std_msgs/String")

@@ -1,4 +1,4 @@
-"""Connections that break without a word, stall, or never say what they want."""
+"""Connections that break silently, stall, or never state their purpose."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ CLOSED = (ConnectionResetError, BrokenPipeError, asyncio.IncompleteReadError)
 
 
 def listen(gateway: Gateway) -> list[float]:
-    """Return the speeds that the wheels get."""
+    """Return the speeds that the wheels receive."""
     got: list[float] = []
     gateway.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x), 100)
     return got
@@ -75,7 +75,7 @@ async def through(line: Cable) -> AsyncIterator[ClientConnection]:
 
 
 async def test_the_stop_is_sent_when_packets_vanish_and_nobody_else_notices() -> None:
-    """A cable that is pulled ends no connection: the lease ends, and the others hear all."""
+    """An unplugged cable closes no connection: the lease ends, and other clients are unaffected."""
     async with (
         serving(Policy.parse(POLICY)) as gateway,
         cable(gateway) as line,
@@ -101,7 +101,7 @@ async def test_the_stop_is_sent_when_packets_vanish_and_nobody_else_notices() ->
 
 @pytest.mark.parametrize("is_one_way", [False, True], ids=["both ways", "to the gateway only"])
 async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_way: bool) -> None:
-    """What was sent before or during the cut arrives at its end; it must move nothing."""
+    """Commands sent before or during the cut arrive when it ends; they must not move anything."""
     limits = "client_lost_sec = 30.0"
     async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
         got = listen(gateway)
@@ -115,7 +115,7 @@ async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_w
             for _ in range(20):
                 await client.send(drive(100.0))
             await until(lambda: got == [1.0, 0.0])
-            if is_one_way:  # the ping is answered, behind the commands
+            if is_one_way:  # the pong follows the commands
                 commands = 20 * len(frame(drive(100.0).encode()))
                 await until(lambda: line.sent_bytes > sent + commands)
             session = session_of(gateway)
@@ -129,7 +129,7 @@ async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_w
 
 
 async def test_a_commander_that_gives_no_sign_is_disconnected_and_may_come_back() -> None:
-    """After `client_lost_sec`: what the cut has kept goes nowhere, a new connection counts."""
+    """After `client_lost_sec`: data held back is discarded, and a new connection is accepted."""
     limits = "client_lost_sec = 0.3"
     async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
         got = listen(gateway)
@@ -150,7 +150,7 @@ async def test_a_commander_that_gives_no_sign_is_disconnected_and_may_come_back(
 
 
 async def test_a_goal_of_a_client_that_gives_no_sign_is_cancelled() -> None:
-    """After `client_lost_sec`; a client that is only silent answers pings, and keeps its goal."""
+    """After `client_lost_sec`; a client that is merely idle answers pings, and keeps its goal."""
     limits = "client_lost_sec = 0.3"
     ends: list[str] = []
     async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
@@ -181,7 +181,7 @@ async def test_a_goal_of_a_client_that_gives_no_sign_is_cancelled() -> None:
 @pytest.mark.stress
 @pytest.mark.timeout(300)
 async def test_the_stop_comes_within_the_time_to_live_when_a_cable_is_pulled() -> None:
-    """And 0.1 s, nine times of ten on a busy machine; and never does anything move behind it."""
+    """Within 0.1 s, nine times out of ten on a busy machine; and nothing moves after it."""
     limits = "client_lost_sec = 30.0\nclients = 8"
     late: list[float] = []
     async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
@@ -213,7 +213,7 @@ async def test_the_stop_comes_within_the_time_to_live_when_a_cable_is_pulled() -
 
 
 async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
-    """What it carries is random: it ends a doubt about when commands were sent."""
+    """Its payload is random: the pong ends a doubt about when commands were sent."""
     async with serving(Policy.parse(POLICY)) as gateway:
         got = listen(gateway)
         reader, writer, _ = await upgraded(gateway)
@@ -236,7 +236,7 @@ async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
 
 
 async def test_a_sign_that_is_asked_for_meanwhile_leaves_the_doubt() -> None:
-    """A client with goals is asked again and again: its answer ends the doubt as well."""
+    """A client with goals is pinged repeatedly: its pong ends the doubt as well."""
     limits = "client_lost_sec = 0.3"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
         got = listen(gateway)
@@ -247,7 +247,7 @@ async def test_a_sign_that_is_asked_for_meanwhile_leaves_the_doubt() -> None:
         for _ in range(3):
             payload = await ping_of(reader)
             assert session.arrivals.is_doubtful
-            writer.write(frame(b"", PONG))  # a sign, but no answer
+            writer.write(frame(b"", PONG))  # a sign of life, but no answer
         writer.write(frame(payload, PONG))
         await until(lambda: not session.arrivals.is_doubtful)
         writer.close()
@@ -269,7 +269,7 @@ def frame(payload: bytes, opcode: int = TEXT, *, first: int = 0x80) -> bytes:
 
 
 async def ping_of(reader: asyncio.StreamReader) -> bytes:
-    """Return what the next ping carries, beyond all other frames."""
+    """Return the payload of the next ping, ignoring all other frames."""
     while True:
         first, size = await reader.readexactly(2)
         if size == 126:
@@ -279,11 +279,11 @@ async def ping_of(reader: asyncio.StreamReader) -> bytes:
             return payload
 
 
-# Connections that say nothing, or read nothing
+# Connections that send nothing, or read nothing
 
 
 async def closed(reader: asyncio.StreamReader) -> bytes:
-    """Wait until the gateway closes a connection, and return what it said."""
+    """Wait until the gateway closes a connection, and return the data that it sent."""
     said = b""
     with contextlib.suppress(*CLOSED):
         while data := await reader.read(1 << 16):
@@ -292,7 +292,7 @@ async def closed(reader: asyncio.StreamReader) -> bytes:
 
 
 async def trickle(writer: asyncio.StreamWriter, beginning: bytes, period_sec: float) -> None:
-    """Send a beginning, and then a byte at a time for ever."""
+    """Send a beginning, and then one byte at a time forever."""
     with contextlib.suppress(*CLOSED):
         writer.write(beginning)
         while True:
@@ -312,7 +312,7 @@ SLOW = {
 
 @pytest.mark.parametrize("what", SLOW)
 async def test_a_request_that_arrives_byte_by_byte_is_given_up(what: str) -> None:
-    """However many bytes come: the time counts for the whole of it, the first or a later one."""
+    """However many bytes arrive: the limit is for the whole request, whether first or later."""
     limits = "handshake_sec = 0.2"
     async with serving(Policy.parse(POLICY + limits)) as gateway, asyncio.TaskGroup() as tasks:
         reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
@@ -323,7 +323,7 @@ async def test_a_request_that_arrives_byte_by_byte_is_given_up(what: str) -> Non
 
 
 async def test_an_idle_connection_is_closed_after_its_answer() -> None:
-    """Kept open, it would take the place of a client; a byte of a head is no request."""
+    """Kept open, it would take the place of a client; a partial header is not a request."""
     request = b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
     limits = "handshake_sec = 0.2"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
@@ -339,7 +339,7 @@ async def test_an_idle_connection_is_closed_after_its_answer() -> None:
 
 
 async def test_five_hundred_connections_that_say_nothing_keep_nobody_out() -> None:
-    """Their number is bounded, and one that asks for something takes the place of the oldest."""
+    """Their number is limited, and a connection that sends a request replaces the oldest one."""
     limits = "clients = 4\nhandshake_sec = 30.0"
     async with (
         serving(Policy.parse(POLICY + limits)) as gateway,
@@ -361,7 +361,7 @@ async def test_five_hundred_connections_that_say_nothing_keep_nobody_out() -> No
 
 
 async def test_an_answer_that_nobody_reads_is_given_up() -> None:
-    """A caller that asks for much and reads nothing must not keep a session for ever."""
+    """A caller that requests much and reads nothing must not keep a session forever."""
     limits = "handshake_sec = 0.2"
     path = "/topics/words?type=std_msgs/msg/String"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
@@ -377,7 +377,7 @@ async def test_an_answer_that_nobody_reads_is_given_up() -> None:
 
 
 async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
-    """What is read slowly is no attack: the answer goes on while some of it is taken."""
+    """A slow reader is no attack: the answer continues as long as some of it is read."""
     limits = "handshake_sec = 0.2"
     size = 400_000
     async with serving(Policy.parse(POLICY + limits)) as gateway:
@@ -398,7 +398,7 @@ async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
 
 @contextlib.contextmanager
 def slow_reader(port: int) -> Any:
-    """Connect with a small buffer in the kernel."""
+    """Connect with a small kernel buffer."""
     with socket.socket() as caller:
         caller.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         caller.connect(("127.0.0.1", port))
@@ -408,7 +408,7 @@ def slow_reader(port: int) -> Any:
 async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A frozen page: what waits for it keeps the connection open if nobody cuts it."""
+    """A frozen page: data waiting for it would keep the connection open if nobody closed it."""
     monkeypatch.setattr("aionode.gateway.server.websocket.PING_SEC", 0.2)
     async with serving(Policy.parse(POLICY)) as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
@@ -424,7 +424,7 @@ async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_no
 
 
 async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
-    """It asks again and again: what waits is bounded, and so is the time."""
+    """It sends requests repeatedly: the waiting answers are limited in size and time."""
     limits = "client_lost_sec = 0.3\nframes_per_sec = 1e6"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
         _, writer, _ = await upgraded(gateway)
@@ -439,11 +439,11 @@ async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
         writer.transport.abort()
 
 
-# Bytes that are made to cost
+# Bytes designed to be costly
 
 
 def tiny(kind: str) -> bytes:
-    """Return what a parser takes long for: as many parts as fit into 256 kB."""
+    """Return data that takes a parser long: as many parts as fit in 256 kB."""
     if kind == "chunks":
         head = b"POST /topics/x HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
         return head + b"1\r\nx\r\n" * 43_000
@@ -455,7 +455,7 @@ def tiny(kind: str) -> bytes:
 
 @pytest.mark.parametrize("kind", ["pings", "frames", "parts", "chunks"])
 async def test_a_burst_of_tiny_parts_leaves_the_loop_to_the_robot(kind: str) -> None:
-    """One read has 40,000 of them, for which a parser takes the better part of a second."""
+    """One read returns 40,000 of them, which take a parser most of a second."""
     data = tiny(kind)
     async with serving(Policy.parse(POLICY)) as gateway:
         if kind == "chunks":
@@ -472,7 +472,7 @@ async def test_a_burst_of_tiny_parts_leaves_the_loop_to_the_robot(kind: str) -> 
 
 
 async def test_parts_without_bytes_do_not_pile_up() -> None:
-    """No limit of bytes counts them."""
+    """A limit in bytes does not count them."""
     async with serving(Policy.parse(POLICY + "frames_per_sec = 1e6")) as gateway:
         reader, writer, _ = await upgraded(gateway)
         with contextlib.suppress(*CLOSED):
@@ -486,7 +486,7 @@ async def test_parts_without_bytes_do_not_pile_up() -> None:
 async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The gateway waits some seconds for the client's own goodbye, which may be behind it."""
+    """The gateway waits some seconds for the client's close frame, which may follow later."""
     monkeypatch.setattr("aionode.gateway.rosbridge.client.MOST_MALFORMED", 3)
     read = 0
     take_message = WebSocketConnection.take_message
@@ -511,7 +511,7 @@ async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
 
 @pytest.mark.parametrize(("limits", "most"), [("", 200), ("frames_per_sec = 100", 100)])
 async def test_at_most_two_hundred_pings_a_second_are_read(limits: str, most: int) -> None:
-    """Each has to be answered, and must cost the robot no more than a frame of the client."""
+    """Each has to be answered, and must not cost the robot more than a frame of the client."""
     async with serving(Policy.parse(POLICY + limits)) as gateway:
         reader, writer, _ = await upgraded(gateway)
         began = asyncio.get_running_loop().time()

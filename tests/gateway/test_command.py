@@ -1,4 +1,4 @@
-"""Commands of remote clients: who holds a topic, and when the stop goes out."""
+"""Commands of remote clients: who holds a topic, and when the stop is sent."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ publish = "/**"
 
 
 class Connection:
-    """A connection whose client answers a ping when a test says so."""
+    """A connection whose client answers a ping when the test says so."""
 
     def __init__(self) -> None:
         self.pongs: list[Callable[[], None]] = []
@@ -65,21 +65,21 @@ class Connection:
         return 0.0
 
     def has_unread(self) -> bool:
-        """Return whether something waits."""
+        """Return whether data is waiting."""
         return False
 
     def ping(self, answered: Callable[[], None] | None = None) -> None:
-        """Keep the answer."""
+        """Keep the answer for later."""
         if answered is not None:
             self.pongs.append(answered)
 
     def abort(self) -> None:
-        """Close nothing."""
+        """Do nothing."""
 
 
 @pytest.fixture
 def wheels(bench: Bench) -> list[tuple[float, float]]:
-    """What the wheels get: forwards, and upwards as the stop of some."""
+    """Record what the wheels receive: forward, and upward in some stops."""
     got: list[tuple[float, float]] = []
     bench.node.create_subscription(
         Twist, "/cmd_vel", lambda msg: got.append((msg.linear.x, msg.linear.z)), 100
@@ -97,7 +97,7 @@ async def drive(session: Session, speed: float, **options: int) -> None:
 
 
 async def refusal(session: Session, speed: float = 9.0, **options: int) -> str:
-    """Return the code by which a command is refused."""
+    """Return the code with which a command is refused."""
     with pytest.raises(RefusedError) as refused:
         await drive(session, speed, **options)
     return refused.value.code
@@ -106,7 +106,7 @@ async def refusal(session: Session, speed: float = 9.0, **options: int) -> str:
 async def test_the_stop_is_sent_when_a_client_is_silent(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """A frozen page, a cable that is pulled: after the time to live, once."""
+    """A frozen page or an unplugged cable: once, after the time to live."""
     async with bench.session("high") as session:
         await drive(session, 1.0)
         await bench.advance(0.2)
@@ -123,7 +123,7 @@ async def test_the_stop_is_sent_when_a_client_is_silent(
 async def test_the_stop_is_sent_when_a_client_leaves(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """A tab that closes: at once; the policy says with which message."""
+    """A closed tab: at once; the policy defines the message."""
     async with bench.session("low") as session:
         await drive(session, 1.0)
     await settle()
@@ -131,7 +131,7 @@ async def test_the_stop_is_sent_when_a_client_leaves(
 
 
 async def test_a_type_whose_default_may_move_the_robot_needs_a_stop(bench: Bench) -> None:
-    """A pose at the origin is where a robot would drive to, and a default of a speed is one."""
+    """A robot would drive to a pose at the origin, or at a default speed."""
     bench.allow(POLICY)
     pose = PoseStamped(pose=Pose(orientation=Quaternion(z=1.0, w=0.0)))
     async with bench.session("high") as session:
@@ -141,7 +141,7 @@ async def test_a_type_whose_default_may_move_the_robot_needs_a_stop(bench: Bench
 
 
 async def test_a_stop_of_the_policy_serves_such_a_type(bench: Bench) -> None:
-    """Its owner knows which message stops the robot."""
+    """The owner of the robot knows which message stops it."""
     bench.allow(POLICY)
     async with bench.session("pilot") as session:
         await session.publish("/goal_pose", PoseStamped(), "geometry_msgs/PoseStamped")
@@ -151,7 +151,7 @@ async def test_a_stop_of_the_policy_serves_such_a_type(bench: Bench) -> None:
 async def test_the_stop_is_sent_when_a_client_is_cancelled(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """As a web server does with a connection that is lost."""
+    """As a web server does when a connection is lost."""
     async with asyncio.TaskGroup() as tasks:
 
         async def client() -> None:
@@ -169,7 +169,7 @@ async def test_the_stop_is_sent_when_a_client_is_cancelled(
 async def test_one_client_at_a_time_commands(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """The others are told who does, and may when it has ended."""
+    """Others learn who commands, and may command afterwards."""
     async with bench.session("low") as first, bench.session("other") as second:
         await drive(first, 1.0)
         with pytest.raises(RefusedError, match="low commands it now") as refused:
@@ -184,7 +184,7 @@ async def test_one_client_at_a_time_commands(
 async def test_a_higher_priority_takes_the_topic_over(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """The stop of the one before is sent first, and it cannot take the topic back."""
+    """The former holder's stop is sent first, and it cannot take the topic back."""
     async with bench.session("low") as low, bench.session("high") as high:
         await drive(low, 1.0)
         await drive(high, 2.0)
@@ -199,7 +199,7 @@ async def test_a_higher_priority_takes_the_topic_over(
 async def test_a_rule_without_a_lease_is_no_way_around_a_holder(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """While somebody commands a topic, nobody else publishes there through the gateway."""
+    """While somebody commands a topic, nobody else publishes to it through the gateway."""
     async with bench.session("high") as high, bench.session("guest") as guest:
         await drive(high, 1.0)
         assert await refusal(guest) == "held"
@@ -219,7 +219,7 @@ async def test_a_command_that_waited_too_long_is_refused(
 
 
 async def test_a_command_with_an_old_stamp_is_refused(bench: Bench) -> None:
-    """Also with one of the future, which says as little about its age."""
+    """Also with a stamp in the future, which says as little about its age."""
     bench.allow(POLICY)
     got: list[TwistStamped] = []
     bench.node.create_subscription(TwistStamped, "/stamped", got.append)
@@ -242,7 +242,7 @@ async def test_a_command_with_an_old_stamp_is_refused(bench: Bench) -> None:
 async def test_what_a_link_delivers_after_a_silence_is_refused(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """It was sent before the cut; what comes behind the answer to a ping was sent after it."""
+    """It was sent before the cut; data after the pong was sent after the ping."""
     async with bench.session("high") as session:
         session.arrivals.connection = connection = Connection()
         await drive(session, 1.0)
@@ -258,7 +258,7 @@ async def test_what_a_link_delivers_after_a_silence_is_refused(
 async def test_a_command_that_waits_while_the_ping_is_answered_is_refused(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """It came before the answer, and waits in a lane behind the description of its type."""
+    """It arrived before the pong, and waits in a lane for the description of its type."""
     async with bench.session("high") as session:
         session.arrivals.connection = connection = Connection()
         await drive(session, 1.0)
@@ -287,7 +287,7 @@ async def test_the_gateway_repeats_nothing(bench: Bench, wheels: list[tuple[floa
 async def test_commands_at_once_open_one_lease(
     bench: Bench, wheels: list[tuple[float, float]]
 ) -> None:
-    """Two clients whose first commands arrive in one turn of the loop."""
+    """Two clients whose first commands arrive in the same loop iteration."""
     async with bench.session("low") as first, bench.session("other") as second:
         results = await asyncio.gather(
             drive(first, 1.0), drive(second, 2.0), drive(first, 3.0), return_exceptions=True
@@ -309,7 +309,7 @@ async def test_a_stop_that_does_not_fit_refuses_the_command(bench: Bench) -> Non
 
 
 async def test_without_a_file_velocities_have_a_lease(bench: Bench) -> None:
-    """A page of a tutorial that sends one command must not drive the robot into the wall."""
+    """A tutorial's page that sends one command must not drive the robot into a wall."""
     got: list[float] = []
     bench.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x))
     async with bench.session() as session:

@@ -1,6 +1,6 @@
-"""Requests that are written by hand: what no browser or library sends, and what pages would.
+"""Handwritten requests: such as no browser or library sends, and such as malicious pages might.
 
-Each is sent over a socket as it stands here; ``PORT`` is the port of the gateway.
+Each is sent over a socket exactly as written here; ``PORT`` is the port of the gateway.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ parameter = "/**"
 
 
 class Answer(NamedTuple):
-    """What the gateway has answered."""
+    """An answer of the gateway."""
 
     status: int
     headers: dict[str, str]
@@ -50,7 +50,7 @@ class Sender:
         self.port = port
 
     async def ask(self, line: str, *headers: str) -> Answer:
-        """Return the answer to a request with these headers, and no others."""
+        """Return the answer to a request with exactly these headers."""
         text = "\r\n".join([line, *headers, "", ""]).replace("PORT", str(self.port))
         reader, writer = await asyncio.open_connection("127.0.0.1", self.port)
         try:
@@ -66,7 +66,7 @@ class Sender:
 
 @asynccontextmanager
 async def sender_of(context: Context) -> AsyncIterator[Sender]:
-    """Yield what sends bytes to a gateway."""
+    """Yield a sender of bytes to a gateway."""
     async with (
         Node("gateway", context=context) as node,
         Gateway(node, Policy.parse(POLICY), port=0) as gateway,
@@ -112,7 +112,7 @@ HOSTS = [
 
 
 async def test_a_request_names_this_machine(aionode_context: Context) -> None:
-    """By an address, which no page can have bound anew, or by a name that the policy lists."""
+    """By an address, which no page can rebind, or by a name that the policy lists."""
     async with sender_of(aionode_context) as sender:
         answers = {
             host: (await sender.ask("GET /topics HTTP/1.1", f"Host: {host}", ENDS)).status
@@ -146,7 +146,7 @@ ORIGINS = [
 
 
 async def test_a_page_is_of_this_gateway_or_of_a_listed_origin(aionode_context: Context) -> None:
-    """To the letter, as browsers write it; of two neither counts."""
+    """Exactly as browsers write it; if there are two, neither counts."""
     async with sender_of(aionode_context) as sender:
         for origins, status in ORIGINS:
             headers = [HERE, *(f"Origin: {origin}" for origin in origins), ENDS]
@@ -161,16 +161,16 @@ REQUESTS: list[tuple[str, list[str], set[int]]] = [
     ("GET /topics HTTP/1.1", [], {400}),
     ("GET /topics HTTP/1.1", [HERE, "Host: evil.example"], {400}),
     ("GET /topics HTTP/1.0", [], {401}),
-    # what the browser says about the page, twice
+    # the browser's information about the page, twice
     ("GET /topics HTTP/1.1", [HERE, "Sec-Fetch-Site: none", "Sec-Fetch-Site: cross-site"], {401}),
     ("GET /topics HTTP/1.1", [HERE, "Sec-Fetch-Site: cross-site", "Sec-Fetch-Site: none"], {401}),
     ("GET /topics HTTP/1.1", [HERE, "SEC-FETCH-SITE: cross-site"], {401}),
     ("GET / HTTP/1.1", [HERE, "Sec-Fetch-Site: cross-site"], {401}),
-    # a target with a host of its own
+    # a target with its own host
     ("GET http://evil.example/topics HTTP/1.1", [HERE], {404}),
     ("GET http://127.0.0.1:PORT/topics HTTP/1.1", ["Host: evil.example"], {401}),
     ("GET //evil.example/topics HTTP/1.1", [HERE], {404}),
-    # methods, and what stands for them elsewhere
+    # methods, and substitutes for them
     ("TRACE /topics HTTP/1.1", [HERE], {405}),
     ("CONNECT /topics HTTP/1.1", [HERE], {405}),
     ("DELETE /parameters/gateway/rate HTTP/1.1", [HERE], {405}),
@@ -179,7 +179,7 @@ REQUESTS: list[tuple[str, list[str], set[int]]] = [
     ("get /topics HTTP/1.1", [HERE], {405}),
     ("HEAD /topics HTTP/1.1", [HERE], {200}),
     ("HEAD /topics/words HTTP/1.1", [HERE, "Accept: text/event-stream"], {200}),
-    # a browser that asks what a page may do
+    # a browser's preflight
     ("OPTIONS /topics HTTP/1.1", [HERE, "Origin: https://evil.example"], {401}),
     ("OPTIONS /topics HTTP/1.1", ["Host: evil.example"], {401}),
     ("OPTIONS * HTTP/1.1", [HERE], {204}),
@@ -192,15 +192,16 @@ REQUESTS: list[tuple[str, list[str], set[int]]] = [
     ("GET /page//etc/passwd HTTP/1.1", [HERE], {404}),
     ("GET /page/app.js%00.html HTTP/1.1", [HERE], {404}),
     ("GET /topics/..%2fnodes HTTP/1.1", [HERE], {400, 404}),
-    ("GET /topics/words%0a?timeout_sec=0 HTTP/1.1", [HERE], {504}),  # the name has no end of line
+    # the name contains no line break
+    ("GET /topics/words%0a?timeout_sec=0 HTTP/1.1", [HERE], {504}),
     ("GET /topics/w%D0%BErds HTTP/1.1", [HERE], {400, 404}),
     ("GET /topics/%ef%bd%97ords HTTP/1.1", [HERE], {400, 404}),
-    # what would be a header of the answer
+    # would-be headers of the answer
     ("GET /page/x%0d%0aSet-Cookie:%20a=b/ HTTP/1.1", [HERE], {307, 404}),
     ("GET /topics/%0d%0aSet-Cookie:%20a=b HTTP/1.1", [HERE], {400, 404}),
     ("GET /topics?type=%0d%0aSet-Cookie:%20a=b HTTP/1.1", [HERE], {200}),
     ("GET /topics HTTP/1.1", [HERE, "Origin: http://evil.example\x1b[31m"], {400, 401}),
-    # who it is, twice or in pieces
+    # credentials, twice or in pieces
     ("GET /topics HTTP/1.1", [HERE, "Authorization: Bearer wrong"], {401}),
     ("GET /topics?token=wrong HTTP/1.1", [HERE], {401}),
     ("GET /topics HTTP/1.1", [HERE, "Authorization: Bearer secret,wrong"], {401}),
@@ -212,7 +213,7 @@ REQUESTS: list[tuple[str, list[str], set[int]]] = [
 async def test_a_request_that_is_crafted_gets_no_further_than_others(
     aionode_context: Context,
 ) -> None:
-    """Its status says so, and nothing of it is a header of the answer."""
+    """Its status says so, and nothing of it becomes a header of the answer."""
     async with sender_of(aionode_context) as sender:
         for line, headers, statuses in REQUESTS:
             answer = await sender.ask(line, *headers, ENDS)
@@ -224,7 +225,7 @@ async def test_a_request_that_is_crafted_gets_no_further_than_others(
 async def test_a_page_of_a_listed_origin_is_told_what_it_may_send(
     aionode_context: Context,
 ) -> None:
-    """Only that one, and a cache keeps the answers apart."""
+    """Only that page, and a cache keeps the answers apart."""
     async with sender_of(aionode_context) as sender:
         line, wants = "OPTIONS /topics/x HTTP/1.1", "Access-Control-Request-Method: POST"
         told = await sender.ask(line, HERE, "Origin: https://dash.example", wants, ENDS)
@@ -238,7 +239,7 @@ async def test_a_page_of_a_listed_origin_is_told_what_it_may_send(
 async def test_a_malformed_request_is_no_line_in_the_log(
     aionode_context: Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A client may send ten thousand a second; nor is a text that is no UTF-8, with a traceback."""
+    """A client may send ten thousand a second; text that is not UTF-8 is not logged either."""
     key = base64.b64encode(b"0" * 16).decode()
     upgrade = "GET / HTTP/1.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nHost: 127.0.0.1\r\n"
     upgrade += f"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n\r\n"
@@ -278,7 +279,7 @@ PROTOCOLS = [
 
 
 async def test_a_subprotocol_is_chosen_and_none_is_a_token(aionode_context: Context) -> None:
-    """The answer repeats what the client offers, but never what it has shown."""
+    """The answer repeats a protocol that the client offered, but never its token."""
     key = base64.b64encode(b"0" * 16).decode()
     upgrade = ["Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13"]
     async with sender_of(aionode_context) as sender:
@@ -309,6 +310,6 @@ async def test_a_subprotocol_is_chosen_and_none_is_a_token(aionode_context: Cont
     ],
 )
 def test_an_origin_or_a_host_that_fits_no_page_is_a_mistake_in_the_file(text: str) -> None:
-    """It would be without effect, or let in any page in a sandbox."""
+    """It would have no effect, or let in any sandboxed page."""
     with pytest.raises(ValueError, match=r"origin|hosts"):
         Policy.parse(text)

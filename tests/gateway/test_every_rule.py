@@ -1,7 +1,7 @@
-"""Every rule of a policy, allowed and refused, by every way in: one table, and what it leaves out.
+"""Every rule of a policy, allowed and refused, over every protocol: one table, and its exceptions.
 
-A cell of the table is one ask of one client by one way in. It shows what the robot did, what the
-client was told in the form of its way in, and the line of the audit log.
+A cell of the table is one request of one client over one protocol. It shows what the robot did,
+what the client was told in the form of its protocol, and the line of the audit log.
 """
 
 from __future__ import annotations
@@ -37,13 +37,12 @@ from aionode.testing import settle
 from tests.support.ways_in import WAYS, Answer, Ask, Way, until, way_in
 
 VERBS: Final = tuple(verb for verb in ALL_VERBS if verb not in {"stop", "asset"})
-"""All about names of the graph but that of assistants, whose rules have a test of their own:
-test_mcp_policy.py. Those about files are in test_assets.py.
-"""
+"""All verbs about names of the graph, except that of assistants, whose rules have their own test:
+test_mcp_policy.py. Those about files are in test_assets.py."""
 
 USED: Final = tuple(verb for verb in VERBS if verb != "see")
 SENT: Final = ("publish", "call", "goal")
-"""The verbs by which a client sends a message."""
+"""The verbs with which a client sends a message."""
 
 CLASSES: Final[dict[str, tuple[Any, Any]]] = {
     "subscribe": (TwistStamped, String),
@@ -141,7 +140,7 @@ NO_CELLS: Final[dict[tuple[str, str], str]] = {
     ("foxglove", "goal"): "the protocol has no actions, and their services are not announced",
     ("foxglove", "advertise"): "in the protocol clients offer no services",
 }
-"""The verbs that a way in does not have, and why."""
+"""The verbs that a protocol does not have, with the reason."""
 
 NO_KEYS: Final[dict[str, tuple[str, ...]]] = {
     "type": ("parameter",),
@@ -152,19 +151,19 @@ NO_KEYS: Final[dict[str, tuple[str, ...]]] = {
     "rate_hz": ("see",),
     "ask": ("see",),
 }
-"""The keys of a rule that mean nothing for a verb: a policy with such a rule is not loaded."""
+"""The keys of a rule that have no meaning for a verb: a policy with such a rule is not loaded."""
 
 KINDS: Final = {"rosbridge": "rosbridge", "foxglove": "foxglove", "http": "http", "events": "http"}
-"""The ways in, as the audit log names them."""
+"""The protocols, as named in the audit log."""
 
 UNTOLD: Final = {
     ("foxglove", "hidden", "subscribe"): "channels have numbers, and the client is told of none",
     ("foxglove", "hidden", "call"): "services have numbers, and the client is told of none",
 }
-"""What a client has no means to ask for."""
+"""Things that a client has no means to request."""
 
 NOT_FOUND: Final = {("http", "hidden", "subscribe"), ("events", "hidden", "subscribe")}
-"""What is answered as if it were not there, so that there is no refusal to write down."""
+"""Requests answered as if the name did not exist, so that there is no refusal to log."""
 
 SEEN: Final = """
 [[allow]]
@@ -185,13 +184,13 @@ def cells() -> Iterator[tuple[str, str]]:
 
 
 def names_of(row: str, verb: str) -> tuple[str, str]:
-    """Return the name with which a row lets a verb pass, and that with which it refuses it."""
+    """Return the names with which a row allows and refuses a verb."""
     start = f"/robot:{row}." if verb in {"see", "parameter"} else f"/{verb}/{row}/"
     return f"{start}open", f"{start}closed"
 
 
 def type_of(row: str, verb: str, *, is_closed: bool = False) -> Any:
-    """Return the class of what has one of these names; None for a parameter."""
+    """Return the class for one of these names; None for a parameter."""
     return CLASSES[verb][row == "type" and is_closed] if verb in CLASSES else None
 
 
@@ -228,7 +227,7 @@ def rules_of(row: str, verb: str) -> list[str]:
 
 
 class Robot(Node):
-    """A robot with something for each cell, which keeps what was done with it."""
+    """A robot with something for each cell, which records what was done to it."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("robot", context=context)
@@ -247,7 +246,7 @@ class Robot(Node):
         self.add_on_set_parameters_callback(self._set)
 
     def _add(self, verb: str, name: str, cls: Any) -> None:
-        """Offer what a client may do one thing with."""
+        """Offer the target of a verb."""
         match verb:
             case "subscribe":
                 latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -290,7 +289,7 @@ class Robot(Node):
 
 
 def values_for(verb: str, number: float, text: str = "", stamp_sec: int = 0) -> Any:
-    """Return what a client sends."""
+    """Return the values that a client sends."""
     match verb:
         case "publish":
             header = {"frame_id": text, **({"stamp": {"sec": stamp_sec}} if stamp_sec else {})}
@@ -306,7 +305,7 @@ def values_for(verb: str, number: float, text: str = "", stamp_sec: int = 0) -> 
 
 
 class LateTime:
-    """A steady clock that is a minute later: so long has a person thought about an answer."""
+    """A steady clock that is a minute ahead: a person has thought about an answer for so long."""
 
     def __init__(self, time_base: Any) -> None:
         self._time_base = time_base
@@ -317,7 +316,7 @@ class LateTime:
 
 
 class Table:
-    """The cells of one way in, filled one after the other.
+    """The cells of one protocol, filled one after another.
 
     Attributes:
         failed: What is wrong in which cell.
@@ -341,7 +340,7 @@ class Table:
         self._clients = clients
 
     async def fill(self, row: str, verb: str) -> None:
-        """Ask for what a row lets pass, and for what it refuses."""
+        """Request what a row allows, and what it refuses."""
         opened, closed = names_of(row, verb)
         given = ROWS[row]
         self._gateway.clients.robot.ask = self._person
@@ -349,7 +348,7 @@ class Table:
         who = "seer" if verb == "see" else "staff"
         await self._attempt(f"{verb}, {row}, open", self._pass(row, verb, opened, who))
         if row == "silence":
-            return  # the first name has shown all, and takes its time
+            return  # the first name has shown everything, and takes time
         if row == "nobody":
             self._gateway.clients.robot.ask = None
         if not given.code:
@@ -365,7 +364,7 @@ class Table:
         await self._attempt(f"{verb}, {row}, closed", work)
 
     async def names(self, who: str) -> set[str]:
-        """Return what a client is shown."""
+        """Return the names shown to a client."""
         return await self._clients[who].names()
 
     async def _attempt(self, cell: str, work: Coroutine[Any, Any, None]) -> None:
@@ -377,7 +376,7 @@ class Table:
     async def _ask(
         self, row: str, verb: str, name: str, who: str, number: float = 1, **sent: Any
     ) -> Answer:
-        """Have a client ask for something."""
+        """Make a client send a request."""
         self.lines.clear()
         before = len(self._robot.effects(verb, name))
         cls = type_of(row, verb, is_closed=name.endswith("closed"))
@@ -393,7 +392,7 @@ class Table:
     async def _pass(
         self, row: str, verb: str, name: str, who: str, number: int = 1, arrives: int = 1
     ) -> None:
-        """Ask for what has to pass: it reaches the robot, the client is answered, it is logged."""
+        """Send an allowed request: it reaches the robot, the client is answered, it is logged."""
         before = len(self._robot.effects(verb, name))
         answer = await self._ask(row, verb, name, who, number)
         assert answer == Answer(), answer
@@ -402,7 +401,7 @@ class Table:
             assert effects[0] == arrives, effects
         if row == "silence":
             await until(lambda: self._robot.effects(verb, name)[-1] == 0.0)
-        if verb != "see":  # what is read is not written down
+        if verb != "see":  # reading is not logged
             line = await self._line(verb, name, lambda line: "code" not in line)
             assert line["who"] == who
             assert line["result"] in {"ok", "succeeded"}, line
@@ -411,13 +410,13 @@ class Table:
             assert ("duration_ms" in line) is (verb in {"call", "goal", "parameter"}), line
 
     async def _refuse(self, row: str, verb: str, name: str, who: str) -> None:
-        """Ask for what is refused: nothing reaches the robot, the client is told, it is logged."""
+        """Send a refused request: nothing reaches the robot, the client is told, it is logged."""
         given = ROWS[row]
         before = self._robot.effects(verb, name)
         sent = {"text": given.text, "stamp_sec": given.stamp_sec}
         answer = await self._ask(row, verb, name, who, given.number, **sent)
         await settle()
-        assert len(self._robot.effects(verb, name)) <= len(before)  # requests leave nothing
+        assert len(self._robot.effects(verb, name)) <= len(before)  # requests leave nothing behind
         if (self._way, row, verb) in NOT_FOUND:
             assert answer.code == "404 not_found"
             return
@@ -433,11 +432,11 @@ class Table:
         assert given.reason in line["result"], line
 
     async def _learn_nothing(self, name: str) -> None:
-        """Show that a client is not told of a name."""
+        """Check that a client learns nothing of a name."""
         assert name not in await self._clients["staff"].names()
 
     async def _line(self, verb: str, name: str, fits: Callable[[dict[str, Any]], bool]) -> Any:
-        """Wait for the line of the audit log about an ask."""
+        """Wait for the audit log's line about a request."""
         names = {name, name.partition(":")[0]}
         return await until(
             lambda: next(
@@ -451,13 +450,13 @@ class Table:
         )
 
     async def _command(self, topic: str) -> None:
-        """Have another client command a topic."""
+        """Make another client command a topic."""
         values = values_for("publish", 1)
         await self._pilot.publish(topic, values, TwistStamped.__ros_type__)
         await until(lambda: self._robot.effects("publish", topic))
 
     async def _person(self, _who: Identity, _verb: str, name: str, _message: Any) -> bool:
-        """Say yes or no; for `arrival` say yes a minute later."""
+        """Approve or refuse; for `arrival` approve a minute later."""
         if name == names_of("arrival", "publish")[1]:
             robot = self._gateway.clients.robot
             robot.time_base = cast("Any", LateTime(robot.node.context.time_base))
@@ -467,7 +466,7 @@ class Table:
 
 @asynccontextmanager
 async def table_of(context: Context, way: str) -> AsyncIterator[Table]:
-    """Yield the table of one way in: a robot, its gateway, and a client for each who."""
+    """Yield the table of one protocol: a robot, its gateway, and a client for each identity."""
     async with AsyncExitStack() as stack:
         robot = await stack.enter_async_context(Robot(context))
         node = await stack.enter_async_context(Node("gateway", context=context))
@@ -504,7 +503,7 @@ async def test_every_rule_lets_pass_and_refuses(
 
 @pytest.mark.parametrize("way", [way for way in WAYS if way != "events"])
 async def test_no_list_has_what_is_hidden(context: Context, way: str) -> None:
-    """Not by its name, not by its type, and not among what a node has."""
+    """Neither its name, nor its type, nor among the endpoints of a node."""
     async with table_of(context, way) as table:
         shown = await table.names("seer")
 
@@ -520,7 +519,7 @@ async def test_no_list_has_what_is_hidden(context: Context, way: str) -> None:
 
 
 def test_the_table_has_every_key_of_a_rule() -> None:
-    """A key that is added has no row yet, and fails here."""
+    """A new key has no row yet, so this test fails."""
     keys = {row.key for row in ROWS.values()}
     verbs = {
         key: {verb for row in ROWS.values() if row.key == key for verb in row.verbs} for key in keys
@@ -539,7 +538,7 @@ def test_the_table_has_every_key_of_a_rule() -> None:
     ("key", "verb"), [(key, verb) for key, verbs in NO_KEYS.items() for verb in verbs]
 )
 def test_a_key_that_means_nothing_for_a_verb_is_a_mistake(key: str, verb: str) -> None:
-    """Who reads the file would believe that it counts."""
+    """A reader of the file would believe that it has an effect."""
     values = {
         "type": "'a/msg/B'",
         "max_bytes": "1",

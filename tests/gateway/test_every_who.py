@@ -1,4 +1,4 @@
-"""Every `[[who]]` of a policy, and every page that may not connect, by every way in."""
+"""Every `[[who]]` of a policy, and every page that may not connect, over every protocol."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.support.ways_in import WAYS, Ask, until, way_in
 
 
 def bearer(token: str) -> dict[str, str]:
-    """Return the header that shows a token."""
+    """Return the header with a token."""
     return {"Authorization": f"Bearer {token}"}
 
 
@@ -97,7 +97,7 @@ see = "/status"
 async def test_every_who_is_let_in_or_refused(
     context: Context, way: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By each way in; whoever is refused gets the status 401, and a line in the audit log."""
+    """Over each protocol; a refused client gets status 401, and a line in the audit log."""
     failed: dict[str, str] = {}
     now = STRANGERS["nothing"]
     monkeypatch.setattr(_audit, "REFUSALS_PER_SEC", 10_000)
@@ -129,7 +129,7 @@ async def test_every_who_is_let_in_or_refused(
 
 
 async def answer_of(way: str, port: int, stranger: Stranger) -> str:
-    """Return with which status and code a client is refused that subscribes; empty if it may."""
+    """Return the status and code with which a subscribing client is refused; empty if it may."""
     asked = Ask("subscribe", "/status", "std_msgs/msg/String", None, lambda: False)
     try:
         async with way_in(way, port, stranger.headers, stranger.host) as client:

@@ -1,4 +1,4 @@
-"""The subscription that clients share."""
+"""The subscription shared by clients."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 async def test_a_publisher_that_comes_later_fits_whatever_it_offers(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A page subscribes to a topic before anybody publishes: that is no mistake to warn of."""
+    """A page subscribes to a topic before anybody publishes: that needs no warning."""
     heard: list[Received] = []
     feed = Feed(node, "/words", String, None)
     feed.add(heard.append)

@@ -1,4 +1,4 @@
-"""Pages of other origins in a real browser: what they can read of the robot, and do with it."""
+"""Pages of other origins in a real browser: what they can read, and do to the robot."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ READS = {
     "style sheet": "element('link', 'href', '/topics', {rel: 'stylesheet'})",
     "frame": "element('iframe', 'src', '/topics').then((frame) => frame.contentDocument.body.id)",
 }
-"""What a page tries; each has a promise, which is rejected where nothing can be read."""
+"""What a page tries; each has a promise, which is rejected if nothing can be read."""
 
 WRITES = {
     "publish": "fetch(`${base}/topics/cmd_vel`, {method: 'POST', body, headers: json})",
@@ -109,7 +109,7 @@ class Scene(NamedTuple):
     port: int
 
     async def attempt(self, host: str, tries: dict[str, str]) -> list[str]:
-        """Have the page of a host try things, and return what has succeeded."""
+        """Make the page of a host try things, and return those that succeeded."""
         base = f"http://127.0.0.1:{self.gateway.port}"
         page = await self.browser.open(f"http://{host}:{self.port}/page?base={base}")
         await page.until("typeof attempt === 'function'")
@@ -134,12 +134,12 @@ async def scene(context: Context) -> AsyncIterator[Scene]:
 
 
 def policy_for(origin: str) -> Policy:
-    """Return a policy by which pages of an origin may do everything."""
+    """Return a policy under which pages of an origin may do everything."""
     return msgspec.structs.replace(Policy.default(allow_write=True), origins=[origin])
 
 
 async def test_a_page_of_another_origin_reads_and_does_nothing(context: Context) -> None:
-    """The browser of somebody who looks at any page runs on the network of the robot."""
+    """The browser of anyone who views any page may run on the robot's network."""
     async with scene(context) as whole:
         robot, gateway, commands, *_ = whole
         robot.x = 5.0
@@ -147,7 +147,8 @@ async def test_a_page_of_another_origin_reads_and_does_nothing(context: Context)
         written = await whole.attempt("localhost", WRITES)
 
         assert succeeded == []
-        assert set(written) <= {"publish without asking", "beacon", "form"}  # of unknown outcome
+        # with an unknown outcome
+        assert set(written) <= {"publish without asking", "beacon", "form"}
         await until(lambda: gateway.stats.refused >= len(READS) + len(WRITES))
         assert commands == []
         assert robot.x == 5.0
@@ -156,10 +157,10 @@ async def test_a_page_of_another_origin_reads_and_does_nothing(context: Context)
 
 
 async def test_a_page_whose_origin_is_listed_reads_and_writes(context: Context) -> None:
-    """So what the other page cannot do is not refused for another reason.
+    """This shows that what the other page cannot do is not refused for another reason.
 
-    An image needs the attribute ``crossorigin``, as the browser does not say otherwise which page
-    asks for it; scripts, style sheets and frames are never answered.
+    An image needs the attribute ``crossorigin``; otherwise the browser does not reveal which page
+    requests it. Scripts, style sheets and frames are never answered.
     """
     async with scene(context) as whole:
         robot, _, commands, *_ = whole

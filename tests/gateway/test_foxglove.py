@@ -50,7 +50,7 @@ WRITING = Policy.default(allow_write=True)
 
 
 class Client:
-    """A client whose frames do not pass a socket."""
+    """A client whose frames do not pass through a socket."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -59,12 +59,12 @@ class Client:
         self._news = asyncio.Event()
 
     async def incoming(self) -> AsyncIterator[bytes | str]:
-        """Yield what `send` is given."""
+        """Yield what `send` was given."""
         while (frame := await self.frames.get()) is not None:
             yield frame
 
     async def collect(self) -> None:
-        """Take what is sent to the client: ops as dicts, binary frames as bytes."""
+        """Collect what is sent to the client: ops as dicts, binary frames as bytes."""
         async for frame in self.session.outbox:
             self.got.append(json.loads(frame) if isinstance(frame, str) else frame)
             self._news.set()
@@ -94,7 +94,7 @@ class Client:
         )
 
     async def announced(self, op: str, field: str, key: str, name: str) -> Any:
-        """Wait until something of this name is announced, and return what is said about it."""
+        """Wait until something with this name is announced, and return the announcement."""
         async with asyncio.timeout(20):
             while True:
                 for frame in self.got:
@@ -110,7 +110,7 @@ class Client:
         return await self.announced("advertise", "channels", "topic", topic)
 
     async def service(self, name: str) -> Any:
-        """Wait until a service is announced, and return what is said about it."""
+        """Wait until a service is announced, and return the announcement."""
         return await self.announced("advertiseServices", "services", "name", name)
 
     def publish(self, channel_id: int, data: bytes) -> None:
@@ -154,7 +154,7 @@ async def test_a_client_is_told_what_the_server_can_do(node: Node) -> None:
 
 
 async def test_a_topic_is_a_channel_with_its_definition(node: Node) -> None:
-    """One that comes later is announced, and one that goes is withdrawn."""
+    """Later ones are announced, and those that go are withdrawn."""
     async with client_of(node) as client:
         await client.op("serverInfo")
         publisher = node.create_publisher(Twist, "/cmd_vel", 1)
@@ -170,7 +170,7 @@ async def test_a_topic_is_a_channel_with_its_definition(node: Node) -> None:
 
 
 async def test_a_large_system_is_announced_in_few_frames(node: Node) -> None:
-    """More frames than may wait for a client would disconnect it; all channels may be wanted."""
+    """More frames than may wait for a client would disconnect it, and it may want all channels."""
     for number in range(1100):
         node.create_publisher(String, f"/words_{number}", 1)
     async with client_of(node, Policy.parse(WITHOUT_LIMIT)) as client:
@@ -187,7 +187,7 @@ async def test_a_large_system_is_announced_in_few_frames(node: Node) -> None:
 
 
 async def test_a_subscriber_gets_the_bytes_of_the_message(node: Node) -> None:
-    """Nothing is decoded; after unsubscribing nothing comes."""
+    """Nothing is decoded; after unsubscribing nothing arrives."""
     publisher = node.create_publisher(String, "/words", 10)
     async with client_of(node) as client:
         channel = await client.channel("/words")
@@ -211,7 +211,7 @@ async def test_a_subscriber_gets_the_bytes_of_the_message(node: Node) -> None:
     [("cdr", bytes(cdr.encode(String(data="hello")))), ("json", b'{"data":"hello"}')],
 )
 async def test_a_client_publishes(node: Node, encoding: str, data: bytes) -> None:
-    """In both encodings; its topic goes when the client unadvertises it."""
+    """In both encodings; its topic disappears when the client unadvertises it."""
     heard: asyncio.Queue[String] = asyncio.Queue()
     node.create_subscription(String, "/words", heard.put_nowait, 10)
     async with client_of(node) as client:
@@ -260,7 +260,7 @@ def answer(request: SetBool.Request) -> SetBool.Response:
 async def test_a_service_answers_in_the_encoding_of_its_request(
     node: Node, encoding: bytes, request_data: bytes, response_data: bytes
 ) -> None:
-    """The id of the call comes back."""
+    """The answer has the id of the call."""
     node.create_service(SetBool, "/power", answer)
     async with client_of(node) as client:
         service = await client.service("/power")
@@ -296,7 +296,7 @@ async def test_a_call_that_waits_holds_up_no_other(node: Node) -> None:
 
 
 async def test_a_call_that_fails_says_why(node: Node) -> None:
-    """Whether the handler has failed, the request is malformed, or there is no such service."""
+    """Whether the handler failed, the request is malformed, or there is no such service."""
     node.create_service(SetBool, "/power", answer, on_error="log")
     async with client_of(node) as client:
         service = await client.service("/power")
@@ -343,7 +343,7 @@ async def test_parameters_are_read_set_and_followed(
 async def test_a_parameter_that_is_refused_leaves_the_others_to_be_set(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """The values always follow: a viewer waits for them, and shows what the nodes have."""
+    """The values always follow: a viewer waits for them, and shows the nodes' values."""
     driver = node_factory("driver")
     driver.declare_parameter("speed", 0.5)
     driver.declare_parameter("name", "left")
@@ -368,7 +368,7 @@ async def test_a_parameter_that_is_refused_leaves_the_others_to_be_set(
 async def test_a_parameter_that_cannot_be_named_or_seen_leaves_the_others(
     node: Node, node_factory: Callable[..., Node], strange: str
 ) -> None:
-    """By each request with several names; a status says which one, and why."""
+    """With each request about several names; a status says which one, and why."""
     policy = """
     [[allow]]
     see = "/**"
@@ -395,7 +395,7 @@ async def test_a_parameter_that_cannot_be_named_or_seen_leaves_the_others(
 async def test_names_that_cannot_be_followed_are_told(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """Their changes would never come; those of the others do."""
+    """Their changes would never arrive; those of the others do."""
     driver = node_factory("driver")
     driver.declare_parameter("speed", 0.5)
     async with client_of(node) as client:
@@ -413,7 +413,7 @@ async def test_names_that_cannot_be_followed_are_told(
 async def test_parameters_are_read_though_one_node_does_not_answer(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """What can be told is told."""
+    """All available values are reported."""
     node_factory("driver").declare_parameter("speed", 0.5)
     async with client_of(node) as client:
         names = ["/nobody.speed", "/driver.speed"]
@@ -426,7 +426,7 @@ async def test_parameters_are_read_though_one_node_does_not_answer(
 
 
 async def test_the_connection_graph_shows_who_talks_with_whom(node: Node) -> None:
-    """First all of it, then what has changed."""
+    """First all of it, then the changes."""
     publisher = node.create_publisher(String, "/words", 1)
     async with client_of(node) as client:
         client.send("subscribeConnectionGraph")
@@ -555,7 +555,7 @@ async def test_a_player_follows_the_timeline(tmp_path: Path, context: Context) -
 
 
 async def test_a_recording_that_has_ended_is_played_again(tmp_path: Path, context: Context) -> None:
-    """The client is told of the end, and begins where it wants."""
+    """The client is told of the end, and seeks where it wants."""
     with bag.BagWriter(tmp_path / "run") as out:
         number = out.add_topic(topic_info("/words", String, []))
         for at in range(3):
@@ -576,7 +576,7 @@ async def test_a_recording_that_has_ended_is_played_again(tmp_path: Path, contex
 
 
 async def test_a_client_is_told_of_simulated_time(context: Context) -> None:
-    """If the gateway goes by it; messages have its times as well."""
+    """If the gateway uses it; messages have simulated times as well."""
     async with Node(
         "gateway", context=context, parameter_overrides=[Parameter("use_sim_time", value=True)]
     ) as node:
@@ -599,7 +599,7 @@ async def test_a_client_is_told_of_simulated_time(context: Context) -> None:
 async def test_a_client_that_may_call_nothing_does_not_control_the_player(
     tmp_path: Path, context: Context
 ) -> None:
-    """It is controlled through the services of its node, about which the policy is asked."""
+    """It is controlled through the services of its node, for which the policy is asked."""
     with bag.BagWriter(tmp_path / "run") as out:
         out.write(out.add_topic(topic_info("/words", String, [])), 1, cdr.encode(String()))
     async with (
@@ -616,7 +616,7 @@ async def test_a_client_that_may_call_nothing_does_not_control_the_player(
 
 @pytest.mark.parametrize("protocol", ["foxglove.sdk.v1", "foxglove.websocket.v1"])
 async def test_foxglove_connects_by_its_subprotocol(node: Node, protocol: str) -> None:
-    """On the port of all other ways in; Lichtblick has the older name of the same protocol."""
+    """On the port of all other protocols; Lichtblick uses the older name of the protocol."""
     async with (
         Gateway(node, port=0) as gateway,
         connect(f"ws://127.0.0.1:{gateway.port}", subprotocols=[Subprotocol(protocol)]) as socket,
@@ -629,7 +629,7 @@ async def test_foxglove_connects_by_its_subprotocol(node: Node, protocol: str) -
 
 
 async def test_the_example_plays_a_bag_for_foxglove(tmp_path: Path, node: Node) -> None:
-    """Its timeline is that of the bag, and its policy lets a viewer pause it."""
+    """The timeline is that of the bag, and the policy lets a viewer pause it."""
     with bag.BagWriter(tmp_path / "run") as out:
         number = out.add_topic(topic_info("/words", String, []))
         for at in range(60):

@@ -1,4 +1,4 @@
-"""Frames of Foxglove's protocol: the bytes are those of the protocol's own tests."""
+"""Frames of Foxglove's protocol: the bytes are those in the protocol's own tests."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def test_a_time_is_nine_bytes() -> None:
 
 
 def test_a_response_names_its_call_and_encoding() -> None:
-    """A client may have several calls under way."""
+    """A client may have several calls in progress."""
     call = frames.ServiceCall(10, 12, "json", memoryview(b""))
 
     assert frames.response_frame(call, b"{}") == b"\x03\x0a\0\0\0\x0c\0\0\0\x04\0\0\0json{}"
 
 
 def test_a_state_of_playback_answers_its_request() -> None:
-    """By the id of the request, the client knows its own seek from another's."""
+    """By the id of the request, the client distinguishes its own seek from another's."""
     frame = frames.playback_frame(frames.PAUSED, 12345, 1.0, did_seek=True, request_id="i-am")
 
     assert frame == b"\x05\x01\x39\x30\0\0\0\0\0\0\0\0\x80\x3f\x01\x04\0\0\0i-am"
@@ -51,7 +51,7 @@ def test_a_message_of_a_client_is_not_copied() -> None:
 
 
 def test_a_call_has_its_encoding() -> None:
-    """Requests come as CDR or as JSON."""
+    """Requests are CDR or JSON."""
     frame = b"\x02\x01\0\0\0\x02\0\0\0\x03\0\0\0cdrrequest"
 
     assert frames.binary_of(frame) == frames.ServiceCall(1, 2, "cdr", memoryview(b"request"))
@@ -59,7 +59,7 @@ def test_a_call_has_its_encoding() -> None:
 
 @pytest.mark.parametrize(("has_seek", "seek_ns"), [(1, 100_500_000_000), (0, None)])
 def test_a_seek_is_optional(has_seek: int, seek_ns: int | None) -> None:
-    """Its bytes are there in any case."""
+    """Its bytes are present in any case."""
     head = struct.pack("<BBfBQI", 3, 0, 1.5, has_seek, 100_500_000_000, 7)
 
     assert frames.binary_of(head + b"some-id") == frames.PlaybackRequest(
@@ -88,7 +88,7 @@ def test_other_text_is_refused(text: str) -> None:
 
 
 def test_an_op_may_have_fields_that_are_new() -> None:
-    """Newer clients send more."""
+    """Newer clients send more fields."""
     text = '{"op":"subscribe","subscriptions":[{"id":1,"channelId":2,"new":3}],"newer":4}'
 
     op = frames.op_of(text, 5000)

@@ -1,4 +1,4 @@
-"""HTTP: what curl and programs do with the robot, and what they are refused."""
+"""HTTP: what curl and programs do with the robot, and what is refused."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 from tests.support.http_client import http_client
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""So that a request finds the message, whichever comes first."""
+"""So that a request finds the message, whichever arrives first."""
 
 NodeFactory = Callable[..., Node]
 
@@ -109,7 +109,7 @@ async def test_a_name_that_does_not_exist_is_told_with_a_code(
 
 
 async def test_the_next_message_is_json(client: httpx.AsyncClient, robot: Node) -> None:
-    """NaN is null, as JSON has none."""
+    """NaN becomes null, since JSON has no NaN."""
     scan = LaserScan(ranges=[1.5, float("nan")])
     robot.create_publisher(LaserScan, "/scan", LATCHED).publish(scan)
 
@@ -120,7 +120,7 @@ async def test_the_next_message_is_json(client: httpx.AsyncClient, robot: Node) 
 
 
 async def test_a_name_may_have_its_slash(client: httpx.AsyncClient, robot: Node) -> None:
-    """Programs put the full name of a topic behind ``/topics/``."""
+    """Programs append the full name of a topic to ``/topics/``."""
     robot.create_publisher(String, "/counter", LATCHED).publish(String(data="1"))
 
     assert (await client.get("/topics//counter")).json() == {"data": "1"}
@@ -129,7 +129,7 @@ async def test_a_name_may_have_its_slash(client: httpx.AsyncClient, robot: Node)
 async def test_a_topic_without_messages_is_waited_for_in_vain(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """The wait has an end, which the caller may choose."""
+    """The wait is limited, and the caller may choose the limit."""
     robot.create_publisher(String, "/chatter", 10)
 
     answer = await client.get("/topics/chatter?timeout_sec=0")
@@ -141,7 +141,7 @@ async def test_a_topic_without_messages_is_waited_for_in_vain(
 async def test_a_number_of_the_query_is_checked(
     client: httpx.AsyncClient, robot: Node, query: str
 ) -> None:
-    """A request cannot wait for ever."""
+    """A request cannot wait forever."""
     robot.create_publisher(String, "/chatter", 10)
 
     answer = await client.get(f"/topics/chatter?{query}")
@@ -168,7 +168,7 @@ async def test_messages_are_a_stream_of_events(client: httpx.AsyncClient, robot:
 async def test_a_slow_stream_of_events_has_the_last_message(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Of a burst the first and the last are sent, with the time that the caller wants between."""
+    """Of a burst the first and the last message are sent, with the requested time between."""
     publisher = robot.create_publisher(String, "/chatter", 10)
     async with client.stream(
         "GET", "/topics/chatter?min_period_sec=0.05", headers={"Accept": "text/event-stream"}
@@ -185,7 +185,7 @@ async def test_a_slow_stream_of_events_has_the_last_message(
 async def test_a_closed_stream_leaves_no_subscription(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """What a request began ends with its connection."""
+    """Everything that a request began ends with its connection."""
     publisher = robot.create_publisher(String, "/chatter", 10)
     async with client.stream(
         "GET", "/topics/chatter", headers={"Accept": "text/event-stream"}
@@ -199,7 +199,7 @@ async def test_a_closed_stream_leaves_no_subscription(
 async def test_a_stream_ends_with_the_rights_of_its_caller(
     aionode_context: Context, robot: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As with the gateway itself: the stream is complete, and the log has no error."""
+    """As when the gateway stops: the stream is complete, and the log has no error."""
     robot.create_publisher(String, "/chatter", 10)
     async with (
         Node("gateway", context=aionode_context) as node,
@@ -217,7 +217,7 @@ async def test_a_stream_ends_with_the_rights_of_its_caller(
 
 
 async def test_a_message_is_published(client: httpx.AsyncClient, robot: Node) -> None:
-    """The robot gets what the caller sends, and the caller nothing but the news that it is done."""
+    """The robot gets the message, and the caller only a confirmation."""
     subscription = robot.create_subscription(String, "/chatter")
 
     answer = await client.post("/topics/chatter", json={"data": "hello"})
@@ -227,7 +227,7 @@ async def test_a_message_is_published(client: httpx.AsyncClient, robot: Node) ->
 
 
 async def test_bytes_are_base64_in_both_directions(client: httpx.AsyncClient, robot: Node) -> None:
-    """What a client reads, it can send."""
+    """A client can send what it reads."""
     subscription = robot.create_subscription(CompressedImage, "/in")
     sent = CompressedImage(format="raw", data=b"\x00\xff")
     robot.create_publisher(CompressedImage, "/out", LATCHED).publish(sent)
@@ -254,7 +254,7 @@ async def test_bytes_are_base64_in_both_directions(client: httpx.AsyncClient, ro
 async def test_a_body_that_is_no_message_is_refused(
     client: httpx.AsyncClient, robot: Node, body: bytes, media_type: str, status: int, code: str
 ) -> None:
-    """Also one that would take the parser's stack, or the robot's memory."""
+    """Also one that would exhaust the parser's stack, or the robot's memory."""
     robot.create_subscription(String, "/chatter")
 
     answer = await client.post(
@@ -265,7 +265,7 @@ async def test_a_body_that_is_no_message_is_refused(
 
 
 async def test_a_body_that_does_not_come_has_an_end(aionode_context: Context) -> None:
-    """A caller that sends one byte a minute takes no place for ever."""
+    """A caller that sends one byte a minute does not keep a place forever."""
     policy = """
         [[who]]
         name = "local"
@@ -357,7 +357,7 @@ async def test_images_are_a_stream_of_pictures(client: httpx.AsyncClient, robot:
 async def test_an_image_of_any_type_is_shown(
     client: httpx.AsyncClient, robot: Node, encoding: str, pixels: Any, shown: Any
 ) -> None:
-    """Depth cameras and raw sensors have no eight bits: they are scaled, and NaN is dark."""
+    """Depth and raw images do not have eight bits: they are scaled, and NaN is dark."""
     robot.create_publisher(Image, "/image", LATCHED).publish(image.from_numpy(pixels, encoding))
 
     png = await client.get("/topics/image", headers={"Accept": "image/png"})
@@ -374,7 +374,7 @@ async def test_an_image_of_any_type_is_shown(
 async def test_channels_that_are_no_colours_are_refused(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """The caller learns which fit."""
+    """The caller learns which numbers are allowed."""
     flow = image.from_numpy(np.zeros((2, 2, 2), np.float32), "32FC2")
     robot.create_publisher(Image, "/flow", LATCHED).publish(flow)
 
@@ -388,7 +388,7 @@ async def test_channels_that_are_no_colours_are_refused(
 async def test_a_picture_has_the_width_and_quality_that_are_asked_for(
     client: httpx.AsyncClient, robot: Node, *, compressed: bool
 ) -> None:
-    """Thumbnails over a slow link; pictures that come compressed are made smaller, too."""
+    """For thumbnails over a slow link; compressed images are made smaller, too."""
     noise = np.random.default_rng(1).integers(0, 255, (60, 100, 3), np.uint8)
     message = image.from_numpy(noise, "rgb8")
     if compressed:
@@ -410,7 +410,7 @@ async def test_a_picture_has_the_width_and_quality_that_are_asked_for(
 
 
 async def test_compressed_depth_is_shown(client: httpx.AsyncClient, robot: Node) -> None:
-    """Scaled by its range, as depth that is not compressed."""
+    """Scaled by its range, like uncompressed depth."""
     pixels = np.linspace(500, 2500, 40 * 30).reshape(30, 40).astype(np.uint16)
     file = image.compress(image.from_numpy(pixels, "mono16"), "png")
     depth = CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + bytes(file.data))
@@ -427,7 +427,7 @@ async def test_compressed_depth_is_shown(client: httpx.AsyncClient, robot: Node)
 async def test_a_size_or_quality_that_does_not_fit_is_refused(
     client: httpx.AsyncClient, robot: Node, query: str
 ) -> None:
-    """Nothing that is asked for is ignored."""
+    """No requested option is ignored."""
     robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
 
     assert (await client.get(f"/topics/image{query}")).status_code == 400
@@ -448,7 +448,7 @@ async def test_a_size_or_quality_that_does_not_fit_is_refused(
 async def test_the_caller_chooses_the_format_of_a_picture(
     client: httpx.AsyncClient, robot: Node, accept: str, media_type: str
 ) -> None:
-    """What a browser can show is no wish; a PNG of a camera is large."""
+    """A browser's list of formats is not a preference; a PNG from a camera is large."""
     robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
 
     answer = await client.get("/topics/image", headers={"Accept": accept})
@@ -459,7 +459,7 @@ async def test_the_caller_chooses_the_format_of_a_picture(
 async def test_without_pillow_an_image_is_refused(
     client: httpx.AsyncClient, robot: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pillow is no part of the extra: the answer says how to get it."""
+    """Pillow is not part of the extra: the answer says how to install it."""
     monkeypatch.setitem(sys.modules, "PIL.Image", None)
     monkeypatch.setitem(sys.modules, "PIL", None)
     robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
@@ -536,7 +536,7 @@ async def test_a_service_that_nobody_knows_is_not_found(client: httpx.AsyncClien
 
 
 class Counter:
-    """An action server that counts until its order, waits, and tells how its goals end."""
+    """An action server that counts up to its order, waits, and records how its goals end."""
 
     def __init__(self, node: Node) -> None:
         self.ended: asyncio.Future[str] = asyncio.get_running_loop().create_future()
@@ -555,7 +555,7 @@ class Counter:
         return GoalResponse.REJECT if goal.order < 0 else GoalResponse.ACCEPT
 
     async def execute(self, goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
-        """Give feedback once, and succeed when it may go on."""
+        """Give feedback once, and succeed when allowed to continue."""
         goal.publish_feedback(Fibonacci.Feedback(sequence=[0]))
         self.began.set()
         try:
@@ -569,7 +569,7 @@ class Counter:
 
 
 async def test_a_goal_is_followed_by_events(client: httpx.AsyncClient, robot: Node) -> None:
-    """Feedback comes as it is sent, and the result is the last event."""
+    """Feedback is sent as it arrives, and the result is the last event."""
     counter = Counter(robot)
     read: list[str] = []
 
@@ -597,7 +597,7 @@ async def test_a_goal_is_followed_by_events(client: httpx.AsyncClient, robot: No
 async def test_the_feedback_of_all_clients_is_a_topic(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Its type is none of a file: it belongs to the action."""
+    """Its type is not defined in a file: it belongs to the action."""
     feedback = Fibonacci.Impl.FeedbackMessage(feedback=Fibonacci.Feedback(sequence=[0, 1]))
     topic = robot.create_publisher(type(feedback), "/count/_action/feedback", LATCHED)
     topic.publish(feedback)
@@ -608,7 +608,7 @@ async def test_the_feedback_of_all_clients_is_a_topic(
 
 
 async def test_closing_the_stream_cancels_the_goal(client: httpx.AsyncClient, robot: Node) -> None:
-    """Motion ends with whoever asked for it."""
+    """Motion ends when its client has gone."""
     counter = Counter(robot)
 
     async with client.stream("POST", "/actions/count", json={"order": 7}) as answer:
@@ -620,7 +620,7 @@ async def test_closing_the_stream_cancels_the_goal(client: httpx.AsyncClient, ro
 async def test_a_goal_without_a_stream_ends_with_its_connection_too(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """A caller that takes JSON gets the result alone, and may leave before."""
+    """A caller that accepts JSON gets only the result, and may leave earlier."""
     counter = Counter(robot)
     headers = {"Accept": "application/json"}
     async with asyncio.TaskGroup() as tasks:
@@ -634,7 +634,7 @@ async def test_a_goal_without_a_stream_ends_with_its_connection_too(
 
 
 async def test_the_result_alone_is_json(client: httpx.AsyncClient, robot: Node) -> None:
-    """For a script that wants no events."""
+    """For a script that does not want events."""
     Counter(robot).go_on.set()
 
     answer = await client.post(
@@ -645,7 +645,7 @@ async def test_the_result_alone_is_json(client: httpx.AsyncClient, robot: Node) 
 
 
 async def test_a_rejected_goal_has_no_stream(client: httpx.AsyncClient, robot: Node) -> None:
-    """A program looks at the status first."""
+    """A program checks the status first."""
     Counter(robot)
 
     answer = await client.post("/actions/count", json={"order": -1})
@@ -657,7 +657,7 @@ async def test_a_rejected_goal_has_no_stream(client: httpx.AsyncClient, robot: N
 async def test_a_caller_of_a_goal_is_lost_when_its_host_is_silent(
     client: httpx.AsyncClient, robot: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A cable that is pulled ends no connection by itself: the kernel is told to ask."""
+    """Unplugging a cable does not close a connection: the kernel is told to probe it."""
     Counter(robot)
     limits_ms: list[int] = []
 
@@ -680,7 +680,7 @@ async def test_a_caller_of_a_goal_is_lost_when_its_host_is_silent(
 
 
 async def test_parameters_are_read_and_set(client: httpx.AsyncClient, robot: Node) -> None:
-    """A whole number is one for a floating-point parameter: JavaScript writes 2.0 as 2."""
+    """A whole number is accepted for a floating-point parameter: JavaScript writes 2.0 as 2."""
     robot.declare_parameter("rate", 1.5)
     robot.declare_parameter("gains", [0.5, 1.0])
 
@@ -714,7 +714,7 @@ async def test_a_parameter_that_the_node_rejects_is_told_with_its_reason(
 async def test_the_document_has_what_the_caller_may_do(
     aionode_context: Context, robot: Node
 ) -> None:
-    """It is made from the policy, so it is the answer to what a client can do."""
+    """It is derived from the policy, so it tells a client what it can do."""
     policy = """
         [[who]]
         name = "local"
@@ -740,7 +740,7 @@ async def test_the_document_has_what_the_caller_may_do(
 async def test_the_openapi_document_leaves_infrastructure_out_unless_all_is_asked_for(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Of a robot with three nodes, 21 of 23 services would be how ROS works."""
+    """Of a robot with three nodes, 21 of 23 services would be infrastructure."""
     robot.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
     of_user = (await client.get("/openapi.json")).json()["paths"]
     everything = (await client.get("/openapi.json?all=1")).json()["paths"]
@@ -754,7 +754,7 @@ async def test_the_openapi_document_leaves_infrastructure_out_unless_all_is_aske
 async def test_metrics_count_what_the_endpoints_count(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Prometheus refuses two samples with the same labels, and so two publishers are one."""
+    """Prometheus refuses two samples with the same labels, so two publishers are merged."""
     for _ in range(2):
         robot.create_publisher(String, "/chatter", 10).publish(String(data="a"))
 
@@ -771,7 +771,7 @@ async def test_metrics_count_what_the_endpoints_count(
 
 
 async def test_the_health_is_told_to_everyone(aionode_context: Context) -> None:
-    """What watches the process has no token, and the answer says nothing else."""
+    """A process monitor has no token, and the answer reveals nothing else."""
     policy = """
         [[who]]
         name = "operator"

@@ -1,4 +1,4 @@
-"""The web server by itself: an application of ASGI over real connections, in and out of order."""
+"""The web server alone: an ASGI application over real connections, in and out of order."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ async def served(limits: str = "") -> AsyncIterator[int]:
 
 
 async def told(sent: bytes, *more: bytes) -> bytes:
-    """Return all that the server says to some bytes, until it closes the connection."""
+    """Return everything that the server answers to some bytes, until it closes the connection."""
     async with served("handshake_sec = 0.2") as port:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         for part in (sent, *more):
@@ -73,12 +73,12 @@ async def told(sent: bytes, *more: bytes) -> bytes:
 
 
 def bodies(answer: bytes) -> list[bytes]:
-    """Return what follows each head."""
+    """Return what follows each header."""
     return [part.partition(b"\r\n\r\n")[2] for part in answer.split(b"HTTP/1.1 ")[1:]]
 
 
 async def test_requests_that_arrive_at_once_are_answered_in_their_order() -> None:
-    """A program need not wait for the answer to one before it sends the next."""
+    """A program need not wait for one answer before it sends the next request."""
     get = b"GET /%d HTTP/1.1\r\n" + HOST + b"\r\n"
 
     answer = await told(get % 1 + get % 2 + get % 3)
@@ -87,7 +87,7 @@ async def test_requests_that_arrive_at_once_are_answered_in_their_order() -> Non
 
 
 async def test_the_head_of_an_answer_is_sent_without_its_body() -> None:
-    """As HEAD asks; its length is that of the body that GET would have."""
+    """For HEAD; the length is that of the body that GET would return."""
     answer = await told(b"HEAD /x HTTP/1.1\r\n" + HOST + b"\r\n")
 
     assert b"content-length: 8" in answer
@@ -95,7 +95,7 @@ async def test_the_head_of_an_answer_is_sent_without_its_body() -> None:
 
 
 async def test_a_client_that_waits_for_leave_is_told_to_go_on() -> None:
-    """Curl does, before it sends a large body."""
+    """Curl waits for it before it sends a large body."""
     head = b"POST /x HTTP/1.1\r\n" + HOST + b"Content-Length: 4\r\nExpect: 100-continue\r\n\r\n"
     async with served() as port:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -110,7 +110,7 @@ async def test_a_client_that_waits_for_leave_is_told_to_go_on() -> None:
 
 
 async def test_a_body_that_the_application_has_not_read_is_no_request() -> None:
-    """What is left of it is taken off the connection before the next request."""
+    """The rest of it is removed from the connection before the next request."""
     body = b"GET /of-the-body HTTP/1.1\r\n\r\n"
     post = b"POST /unread HTTP/1.1\r\n" + HOST + b"Content-Length: %d\r\n\r\n" % len(body)
 
@@ -120,7 +120,7 @@ async def test_a_body_that_the_application_has_not_read_is_no_request() -> None:
 
 
 async def test_an_answer_of_unknown_length_comes_in_chunks() -> None:
-    """The connection lives on after it; one of HTTP/1.0 ends instead."""
+    """The connection stays open; one of HTTP/1.0 is closed instead."""
     new = await told(b"GET /chunks HTTP/1.1\r\n" + HOST + b"\r\n")
     old = await told(b"GET /chunks HTTP/1.0\r\n\r\n")
 
@@ -144,7 +144,7 @@ async def test_an_answer_of_unknown_length_comes_in_chunks() -> None:
     ],
 )
 async def test_what_cannot_be_answered_ends_the_connection(sent: bytes, status: bytes) -> None:
-    """With a status where none was sent: nobody could say where the next request begins."""
+    """With a status if none was sent: nobody could tell where the next request begins."""
     answer = await told(sent)
 
     assert answer.startswith(b"HTTP/1.1 " + status if status else b"")
@@ -172,7 +172,7 @@ async def test_frames_may_follow_the_request_of_a_websocket_at_once() -> None:
 
 @given(st.lists(st.integers(1, 30), max_size=12))
 def test_it_does_not_matter_how_requests_are_cut(sizes: list[int]) -> None:
-    """A network cuts where it likes."""
+    """A network may split them anywhere."""
     post = b"POST /a HTTP/1.1\r\n" + HOST + b"Content-Length: 3\r\n\r\nabc"
     stream = post + b"GET /b HTTP/1.1\r\n" + HOST + b"Connection: close\r\n\r\n"
     parts = []

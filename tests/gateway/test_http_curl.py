@@ -1,4 +1,4 @@
-"""The page about HTTP, with curl against a gateway: what it shows, and a curl that is killed."""
+"""The page about HTTP, run with curl against a gateway, and a curl that is killed."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Robot(Node):
         return AddTwoInts.Response(sum=request.a + request.b)
 
     def count(self, goal: Any) -> Fibonacci.Result:
-        """Give feedback once, and the result of the page."""
+        """Give feedback once, and the result shown on the page."""
         goal.publish_feedback(Fibonacci.Feedback(sequence=[0, 1]))
         goal.succeed()
         return Fibonacci.Result(sequence=[0, 1, 1])
@@ -88,7 +88,7 @@ async def robot_of_the_page(context: Context) -> AsyncIterator[tuple[Robot, int]
 
 @asynccontextmanager
 async def curl(command: str, port: int) -> AsyncIterator[Process]:
-    """Yield a curl that runs; it is killed at the end."""
+    """Yield a running curl, which is killed at the end."""
     words = shlex.split(command.replace(":9090", f":{port}"))
     process = await asyncio.create_subprocess_exec(*words, "--silent", stdout=PIPE)
     try:
@@ -100,7 +100,7 @@ async def curl(command: str, port: int) -> AsyncIterator[Process]:
 
 
 def commands() -> list[tuple[str, str]]:
-    """Return the calls of curl in the page, and what each of them prints."""
+    """Return the curl commands of the page, and the output of each."""
     found = []
     block = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
     for match in block.finditer(PAGE.read_text(encoding="utf-8")):
@@ -112,12 +112,12 @@ def commands() -> list[tuple[str, str]]:
 
 
 def without_ids(text: str) -> str:
-    """Return a text without the ids of goals, which are chance."""
+    """Return a text without the random ids of goals."""
     return re.sub(r"[0-9a-f]{32}", "ID", text)
 
 
 async def test_curl_prints_what_the_page_shows(aionode_context: Context) -> None:
-    """Newcomers type what the page shows."""
+    """Newcomers type the commands of the page."""
     async with robot_of_the_page(aionode_context) as (_, port):
         shown = commands()
         for command, expected in shown:
@@ -133,7 +133,7 @@ async def test_curl_prints_what_the_page_shows(aionode_context: Context) -> None
 
 
 async def test_a_curl_that_is_killed_cancels_its_goal(aionode_context: Context) -> None:
-    """Motion ends with whoever asked for it: the kernel tells the gateway that curl is gone."""
+    """Motion ends when its client has gone: the kernel tells the gateway that curl has."""
     command = (
         "curl --no-buffer --json '{}' --header 'Accept: text/event-stream' "
         "http://127.0.0.1:9090/actions/wait"

@@ -77,7 +77,7 @@ NAMES = {
 
 
 async def ask(client: httpx.AsyncClient, verb: str) -> httpx.Response:
-    """Do one thing with the robot."""
+    """Send one request to the robot."""
     method, path, body = REQUESTS[verb]
     headers = {"Content-Type": "application/json"}
     content = None if body is None else httpx.Request("POST", "http://a", json=body).content
@@ -86,7 +86,7 @@ async def ask(client: httpx.AsyncClient, verb: str) -> httpx.Response:
 
 @pytest.mark.parametrize("verb", REQUESTS)
 async def test_what_a_rule_allows_is_done(aionode_context: Context, verb: str) -> None:
-    """One rule for one name is enough."""
+    """One rule for one name suffices."""
     policy = f'{WHO}[[allow]]\nsee = "/**"\n{verb} = "{NAMES[verb]}"\n'
     async with robot_and_client(aionode_context, policy) as (_, client):
         answer = await ask(client, verb)
@@ -119,7 +119,7 @@ async def test_a_refusal_has_precedence(aionode_context: Context, verb: str) -> 
 
 
 async def test_what_is_hidden_is_not_there(aionode_context: Context) -> None:
-    """Neither in the lists, nor by its name, nor in the document."""
+    """Neither in the lists, nor by name, nor in the document."""
     policy = f'{EVERYTHING}[[refuse]]\nsee = ["/status", "/robot"]\n'
     async with robot_and_client(aionode_context, policy) as (_, client):
         topics = (await client.get("/topics")).json()
@@ -172,7 +172,7 @@ async def test_a_rate_and_a_size_are_limited(aionode_context: Context) -> None:
 
 
 async def test_what_needs_a_person_is_refused_without_one(aionode_context: Context) -> None:
-    """Nobody is there to say yes."""
+    """There is nobody to approve."""
     policy = f'{WHO}[[allow]]\ncall = "/add"\nask = true\n'
     async with robot_and_client(aionode_context, policy) as (_, client):
         answer = await ask(client, "call")
@@ -181,7 +181,7 @@ async def test_what_needs_a_person_is_refused_without_one(aionode_context: Conte
 
 
 async def test_what_a_person_has_said_yes_to_is_done(aionode_context: Context) -> None:
-    """The person is told who asks for what."""
+    """The person is told who requests what."""
     asked: list[tuple[str, str, str]] = []
 
     async def ask_person(identity: Identity, verb: str, name: str, message: object) -> bool:
@@ -215,9 +215,9 @@ SLOWLY = COMMANDS.replace("ttl_sec = 1.0", "ttl_sec = 60.0")
 
 
 async def test_commands_that_stop_coming_are_followed_by_the_stop(aionode_context: Context) -> None:
-    """A script that is killed, or a cable that is cut: nobody has to tell."""
+    """A script that is killed, or a cable that is cut: nobody has to report it."""
     async with robot_and_client(aionode_context, COMMANDS) as (robot, client):
-        for _ in range(2):  # each request is a session of its own, and one holder
+        for _ in range(2):  # each request is a session of its own, but there is one holder
             answer = await client.post("/topics/cmd_vel", json=TWIST)
             assert answer.status_code == 204
         while (await anext(robot.commands)).linear.x:
@@ -236,7 +236,7 @@ async def test_a_topic_that_another_client_commands_is_held(aionode_context: Con
 
 
 async def post(url: Any, client: str = "", **headers: str) -> httpx.Response:
-    """Return the answer to a command over a connection of its own."""
+    """Return the answer to a command over its own connection."""
     async with http_client(url.port) as other:
         query = {"client": client} if client else {}
         return await other.post("/topics/cmd_vel", json=TWIST, params=query, headers=headers)
@@ -245,7 +245,7 @@ async def post(url: Any, client: str = "", **headers: str) -> httpx.Response:
 async def test_two_programs_with_one_identity_do_not_drive_at_once(
     aionode_context: Context,
 ) -> None:
-    """The second learns who holds the topic, and how a program with many connections is one."""
+    """The second learns who holds the topic, and how to use several connections as one client."""
     async with robot_and_client(aionode_context, SLOWLY) as (robot, client):
         for _ in range(2):
             assert (await client.post("/topics/cmd_vel", json=TWIST)).status_code == 204
@@ -259,7 +259,7 @@ async def test_two_programs_with_one_identity_do_not_drive_at_once(
 
 
 async def test_a_named_client_is_one_over_all_its_connections(aionode_context: Context) -> None:
-    """As `curl` in a loop; another name, and none, are others."""
+    """Like `curl` in a loop; another name, or none, is another client."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         url = client.base_url
         codes = [(await post(url, name)).status_code for name in ("pad", "pad", "arm", "", "pad")]
@@ -271,7 +271,7 @@ async def test_a_named_client_is_one_over_all_its_connections(aionode_context: C
 
 
 async def test_behind_a_proxy_a_connection_is_no_holder(aionode_context: Context) -> None:
-    """It sends the requests of several programs over one; a name tells them apart."""
+    """It sends the requests of several programs over one connection; names tell them apart."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         forwarded = {"X-Forwarded-For": "10.0.0.7", "Authorization": "Bearer secret"}
         codes = [
@@ -287,7 +287,7 @@ async def test_behind_a_proxy_a_connection_is_no_holder(aionode_context: Context
 
 
 async def test_the_name_of_a_client_is_short_and_shown_escaped(aionode_context: Context) -> None:
-    """It is kept while it commands, and told to others."""
+    """It is kept while the client commands, and shown to others."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         long = await post(client.base_url, "x" * 101)
         await post(client.base_url, "pad\n\x1b[2J")
@@ -298,7 +298,7 @@ async def test_the_name_of_a_client_is_short_and_shown_escaped(aionode_context: 
 
 
 async def test_a_websocket_and_a_request_of_one_identity_are_two(aionode_context: Context) -> None:
-    """Each way in has holders of its own, whoever the client is."""
+    """Each protocol has its own holders, whoever the client is."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         await client.post("/topics/cmd_vel", json=TWIST)
         async with connect(f"ws://127.0.0.1:{client.base_url.port}", proxy=None) as page:
@@ -363,7 +363,7 @@ async def test_a_page_of_another_origin_and_a_wrong_token_are_refused(
 async def test_what_is_hidden_by_its_type_is_not_counted_for_the_caller(
     aionode_context: Context,
 ) -> None:
-    """The metrics name the topics that any client hears; a rule may hide all of a type."""
+    """The metrics name all topics that clients receive; a rule may hide all topics of a type."""
     policy = f"{EVERYTHING}[[refuse]]\nsee = '/**'\ntype = 'std_msgs/msg/String'\nwho = 'local'"
     policy += "\n[[who]]\nname = 'other'\ntoken = 'secret'"
     async with (

@@ -18,13 +18,13 @@ POSES = '{"poses":[' + ",".join(["{}"] * 99_000) + "]}"
 
 
 def test_objects_weigh_more_than_their_text() -> None:
-    """An empty one has two characters, and 64 bytes."""
+    """An empty one has two characters, and takes 64 bytes."""
     assert weight_of(POSES) > 6_000_000
     assert weight_of(POSES.encode()) == weight_of(POSES)
 
 
 async def test_a_frame_waits_for_room() -> None:
-    """Its client is not read meanwhile, so that nothing is lost; what is done makes room."""
+    """Its client is not read meanwhile, so nothing is lost; completed ops make room."""
     may_end = asyncio.Event()
     done: list[int] = []
 
@@ -49,7 +49,7 @@ async def test_a_frame_waits_for_room() -> None:
 async def test_a_frame_without_room_is_refused_after_a_while(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A call may wait for a frame of the same client, which has to be read for that."""
+    """A call may wait for a frame of the same client, which therefore has to be read."""
     monkeypatch.setattr(lanes_module, "PATIENCE_SEC", 0.0)
 
     async def wait() -> None:
@@ -64,4 +64,4 @@ async def test_a_frame_without_room_is_refused_after_a_while(
             await lanes.admit(HALF * 2)
         call.cancel()
         await asyncio.wait([call])
-        await lanes.admit(HALF * 3)  # alone, anything that is a frame may pass
+        await lanes.admit(HALF * 3)  # alone, any frame may pass

@@ -1,4 +1,4 @@
-"""Messages that take long to encode hold up nobody: they are encoded while the event loop turns."""
+"""Messages that take long to encode delay nobody: they are encoded while the event loop runs."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ LARGE = [
 
 
 async def turns_during(work: Awaitable[Any]) -> tuple[Any, int]:
-    """Return the result of some work, and how often the loop turned meanwhile."""
+    """Return the result of some work, and the number of loop iterations meanwhile."""
     turns = 0
 
     async def count() -> None:
@@ -58,7 +58,7 @@ async def turns_during(work: Awaitable[Any]) -> tuple[Any, int]:
 
 @pytest.mark.parametrize("message", LARGE, ids=lambda message: type(message).__name__)
 async def test_json_of_a_large_message_is_written_while_the_loop_turns(message: Any) -> None:
-    """And is what is written at once, also of what a decoder returns."""
+    """The result is the same as when written at once, even of what a decoder returns."""
     taken = snapshot(message)
     received = cdr.decode(type(message), cdr.encode(taken))
 
@@ -69,7 +69,7 @@ async def test_json_of_a_large_message_is_written_while_the_loop_turns(message: 
 
 
 async def test_a_png_of_long_text_is_compressed_beside_the_loop() -> None:
-    """That takes most of a second for an image."""
+    """This takes most of a second for an image."""
     text = json.dumps({"data": "xyz" * 100_000})
 
     made, turns = await turns_during(png_frame_in_turns(text))
@@ -79,12 +79,12 @@ async def test_a_png_of_long_text_is_compressed_beside_the_loop() -> None:
 
 
 def received_of(message: Any) -> Received:
-    """Return a message as a feed does."""
+    """Return a message like a feed."""
     return Received("/t", message.__ros_type__, type(message), cdr.encode(message), 0)
 
 
 class Slow:
-    """Encodes messages as slowly as a test wants, and notes what is delivered."""
+    """Encodes messages as slowly as a test wants, and records what is delivered."""
 
     def __init__(self, robot: Robot, depth: int = 10) -> None:
         self.go_on = asyncio.Event()
@@ -103,12 +103,12 @@ class Slow:
         self.delivered.append(received.message.data[:1])
 
     def put(self, letter: str, size: int = LARGE_BYTES) -> None:
-        """Have a message arrive."""
+        """Let a message arrive."""
         self.preparing.put(received_of(String(data=letter * size)))
 
 
 async def test_a_small_message_does_not_overtake_a_large_one(robot: Robot) -> None:
-    """Clients get the messages of a topic in their order."""
+    """Clients get the messages of a topic in order."""
     slow = Slow(robot)
     slow.put("a", 10)
     slow.put("b")
@@ -123,7 +123,7 @@ async def test_a_small_message_does_not_overtake_a_large_one(robot: Robot) -> No
 
 @pytest.mark.parametrize(("depth", "size"), [(2, LARGE_BYTES), (10, MOST_BYTES // 2 - 100)])
 async def test_what_waits_to_be_encoded_is_bounded(robot: Robot, depth: int, size: int) -> None:
-    """In number and in bytes; the newest are kept, and what is dropped is counted."""
+    """In number and in bytes; the newest are kept, and drops are counted."""
     slow = Slow(robot, depth)
     slow.put("a", size)
     await settle()  # it is being encoded now
@@ -153,7 +153,7 @@ async def test_a_message_that_cannot_be_encoded_ends_nothing(robot: Robot) -> No
 async def test_a_large_message_is_written_once_for_all_clients(
     robot: Robot, client: RosbridgeClient, node: Node, compression: str, monkeypatch: Any
 ) -> None:
-    """Beside the loop, which turns meanwhile, and in order with what follows it."""
+    """Beside the loop, which keeps running, and in order with later messages."""
     written = []
 
     async def count(message: Any) -> list[bytes]:
@@ -178,7 +178,7 @@ async def test_a_large_message_is_written_once_for_all_clients(
 
 
 async def test_a_client_that_leaves_takes_what_waits_with_it(robot: Robot, node: Node) -> None:
-    """Nothing is encoded for nobody."""
+    """Nothing is encoded that nobody receives."""
     publisher = node.create_publisher(Image, "/image", 10)
     async with rosbridge_client(robot) as client:
         client.send("subscribe", topic="/image")

@@ -1,4 +1,4 @@
-"""Goals whose client is lost: which servers end them, and who is told of one that goes on."""
+"""Goals whose client is lost: which servers end them, and who learns of those that continue."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Arm:
 
 
 async def lose_client(bench: Bench, session: Session) -> None:
-    """Have a client send a goal, and then end its session."""
+    """Make a client send a goal, and then end its session."""
     async with session, asyncio.TaskGroup() as tasks:
 
         async def pursue() -> None:
@@ -70,7 +70,7 @@ def fail(_: object) -> CancelResponse:
 async def test_a_server_of_aionode_ends_the_goal_of_a_lost_client(
     bench: Bench, options: dict[str, Any], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Nobody is there any more who could stop the arm."""
+    """Nobody is left who could stop the arm."""
     arm = Arm(bench, **options)
     await settle()
     await lose_client(bench, bench.session("operator"))
@@ -93,9 +93,9 @@ async def test_a_server_of_aionode_ends_the_goal_of_a_lost_client(
 async def test_a_goal_that_goes_on_is_said(
     bench: Bench, options: dict[str, Any], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Something moves that nobody watches: who operates the robot has to learn of it."""
+    """Something moves that nobody watches: the operator of the robot has to learn of it."""
     arm = Arm(bench, **options)
-    await bench.advance(5.0)  # at time 0 a warning that is limited in rate is held back
+    await bench.advance(5.0)  # at time 0 a rate-limited warning would be held back
     await lose_client(bench, bench.session("operator"))
 
     assert arm.moves == 1
@@ -106,7 +106,7 @@ async def test_a_goal_that_goes_on_is_said(
 
 
 async def test_a_client_that_is_there_is_told_that_its_cancel_was_rejected(bench: Bench) -> None:
-    """It is the one who decides then; a server without a callback accepts no request."""
+    """The client decides then; a server without a callback accepts no cancel request."""
     arm = Arm(bench)
     await settle()
     async with rosbridge_client(bench.robot) as client:

@@ -1,4 +1,4 @@
-"""Many clients of a gateway at once, in a process of their own, and one that reads nothing."""
+"""Many clients of a gateway, in a process of their own, and one that reads nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.stress, pytest.mark.timeout(120)]
 
 
 async def test_49_clients_get_every_message_beside_one_that_reads_nothing() -> None:
-    """As a local reader does: a slow client slows nobody. `make gateway-load` measures more."""
+    """Like a local reader: a slow client slows nobody down. `make gateway-load` measures more."""
     _, heard = await run_with_clients(text, 100.0, 3.0, "none", 49, deaf=1)
 
     assert heard.local == 0

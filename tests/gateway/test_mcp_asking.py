@@ -1,4 +1,4 @@
-"""Rules with ``ask``: a person at the client says yes or no, or there is nobody to ask."""
+"""Rules with ``ask``: a person at the client approves or refuses, or there is nobody to ask."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ASKING = POLICY.replace("lease = ", "ask = true\nlease = ").replace(
 
 @pytest.fixture(params=["in process", "http"])
 async def asking(request: pytest.FixtureRequest) -> AsyncIterator[Bench]:
-    """Yield a robot whose policy has a person asked before anything moves."""
+    """Yield a robot whose policy requires asking a person before anything moves."""
     async with bench_of(ASKING, over_http=request.param == "http") as bench:
         yield bench
 
@@ -50,7 +50,7 @@ CALLS = {
 
 @pytest.mark.parametrize("what", CALLS)
 async def test_yes_lets_it_pass(asking: Bench, era: str, what: str) -> None:
-    """One question for each call, also where it is repeated with the answer."""
+    """One question for each call, even if the call is repeated with the answer."""
     person = Person("accept")
     client = await asking.connect(era, elicitation_callback=person)
     answered = await client.call_tool(*CALLS[what])
@@ -63,7 +63,7 @@ async def test_yes_lets_it_pass(asking: Bench, era: str, what: str) -> None:
 @pytest.mark.parametrize("action", ["decline", "cancel"])
 @pytest.mark.parametrize("what", CALLS)
 async def test_no_refuses_it(asking: Bench, era: str, what: str, action: str) -> None:
-    """As a result, and the robot is not touched."""
+    """As a result of the call, and the robot is not touched."""
     client = await asking.connect(era, elicitation_callback=Person(action))
     answered = await client.call_tool(*CALLS[what])
 
@@ -86,7 +86,7 @@ async def test_a_client_that_cannot_ask_is_told_so(asking: Bench, era: str, what
 
 
 async def test_an_answer_counts_once_and_for_its_arguments_only(asking: Bench) -> None:
-    """A client cannot use the yes for another call."""
+    """A client cannot reuse an approval for another call."""
     person = Person("accept")
     client = await asking.connect(elicitation_callback=person)
     server = asking.clients
@@ -98,7 +98,7 @@ async def test_an_answer_counts_once_and_for_its_arguments_only(asking: Bench) -
 
 
 async def test_the_programs_own_way_to_ask_comes_first(era: str) -> None:
-    """A button on the robot says more than a window of the client."""
+    """A button on the robot is more reliable than a window of the client."""
     asked: list[str] = []
 
     async def ask(identity: Any, verb: str, name: str, message: Any) -> bool:

@@ -1,6 +1,6 @@
-"""A model drives the rover by the program that it is used from, which starts `aionode mcp`.
+"""A model drives the rover through the program in which it runs, which starts `aionode mcp`.
 
-The program is named by the environment, as none is on most machines::
+An environment variable names the program, since most machines have none::
 
     AIONODE_MODEL_CLIENT='claude -p {prompt} --mcp-config {config} --allowedTools "mcp__robot__*"'
 
@@ -54,7 +54,7 @@ MODEL: Final = os.environ.get("AIONODE_MODEL_CLIENT", "")
 async def test_a_model_drives_to_the_ball(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It looks, moves, and leaves the rover at a standstill, near the ball."""
+    """It looks, moves, and leaves the rover at a standstill near the ball."""
     environment = isolated_environment()
     for name, value in environment.items():
         monkeypatch.setenv(name, value)

@@ -1,4 +1,4 @@
-"""Motion ends with whoever asked for it: by a cancel, a timeout, its time, or the tool `stop`."""
+"""Motion ends with its call: by cancelling, a timeout, its time, or the tool `stop`."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ MOVING: Final = {"move": MOVE, "goal": GOAL, "watch": WATCH}
 
 
 def is_under_way(bench: Bench, what: str) -> bool:
-    """Return whether a call has begun to do what it is for."""
+    """Return whether a call has started its work."""
     if what == "watch":
         return bench.base.text.get_subscription_count() > 0
     return bool(bench.base.commands if what == "move" else bench.base.goals)
 
 
 async def has_ended(bench: Bench, what: str) -> None:
-    """Wait until a call has ended, and see that nothing comes after its end."""
+    """Wait until a call has ended, and check that nothing follows its end."""
     base, clients = bench.base, bench.clients
     if what == "move":
         await until(lambda: base.commands[-1] == 0.0)
@@ -51,7 +51,7 @@ async def has_ended(bench: Bench, what: str) -> None:
 
 @pytest.mark.parametrize("what", MOVING)
 async def test_a_cancel_ends_it(assisted: Bench, era: str, what: str) -> None:
-    """Also a watch, which only costs the robot time."""
+    """The same for a watch, which only costs the robot time."""
     client = await assisted.connect(era)
     tool, arguments = MOVING[what]
     async with asyncio.TaskGroup() as tasks:
@@ -67,7 +67,7 @@ async def test_a_cancel_ends_it(assisted: Bench, era: str, what: str) -> None:
 
 @pytest.mark.parametrize("what", MOVING)
 async def test_a_timeout_of_the_client_ends_it(assisted: Bench, era: str, what: str) -> None:
-    """A client that waits no longer would not stop the robot either."""
+    """A client that no longer waits would not stop the robot either."""
     client = await assisted.connect(era)
     tool, arguments = MOVING[what]
     async with asyncio.TaskGroup() as tasks:
@@ -78,14 +78,14 @@ async def test_a_timeout_of_the_client_ends_it(assisted: Bench, era: str, what: 
 
 
 async def giving_up(client: Any, tool: str, arguments: dict[str, Any]) -> None:
-    """Call a tool, and wait for its answer for a second only."""
+    """Call a tool, and wait for its answer for only a second."""
     with pytest.raises(mcp.MCPError):
         await client.call_tool(tool, arguments, read_timeout_seconds=1.0)
 
 
 @asynccontextmanager
 async def raw_call(gateway: object, tool: str, arguments: dict[str, Any]) -> AsyncIterator[None]:
-    """Call a tool by the revision with sessions, and close the connection, as a kill does."""
+    """Call a tool with the revision that has sessions, and close the connection, like a kill."""
     assert isinstance(gateway, Gateway)
     address = f"http://127.0.0.1:{gateway.port}/mcp"
     head = {"accept": "application/json, text/event-stream"}
@@ -110,7 +110,7 @@ async def raw_call(gateway: object, tool: str, arguments: dict[str, Any]) -> Asy
 
 @pytest.mark.parametrize("what", MOVING)
 async def test_a_client_that_disconnects_ends_it_in_the_older_revision_too(what: str) -> None:
-    """By specification its call goes on; but nobody would stop the robot any more."""
+    """By specification its call continues; but nobody is left to stop the robot."""
     async with bench_of(over_http=True) as bench:
         tool, arguments = MOVING[what]
         async with raw_call(bench.served, tool, arguments):
@@ -119,7 +119,7 @@ async def test_a_client_that_disconnects_ends_it_in_the_older_revision_too(what:
 
 
 async def test_a_move_ends_by_its_time(assisted: Bench, era: str) -> None:
-    """With the stop, and says so."""
+    """With the stop, which its result mentions."""
     client = await assisted.connect(era)
     tool, arguments = MOVE
     answered = await client.call_tool(tool, {**arguments, "seconds": 0.4})
@@ -133,7 +133,7 @@ async def test_a_move_ends_by_its_time(assisted: Bench, era: str) -> None:
 
 
 async def test_a_goal_ends_at_the_ceiling(assisted: Bench, era: str) -> None:
-    """Nobody tells that a client is frozen."""
+    """Nobody notices that a client is frozen."""
     assisted.use(POLICY + "[limits]\ngoal_sec = 0.3\n")
     client = await assisted.connect(era)
     answered = await client.call_tool(*GOAL)
@@ -145,7 +145,7 @@ async def test_a_goal_ends_at_the_ceiling(assisted: Bench, era: str) -> None:
 
 
 async def test_a_goal_tells_how_far_it_is(assisted: Bench, era: str) -> None:
-    """By its feedback, and returns its result."""
+    """By its feedback; finally it returns its result."""
     client = await assisted.connect(era)
     heard: list[str] = []
 
@@ -160,7 +160,7 @@ async def test_a_goal_tells_how_far_it_is(assisted: Bench, era: str) -> None:
 
 @pytest.mark.parametrize("what", ["move", "goal"])
 async def test_stop_ends_what_the_client_moves(assisted: Bench, era: str, what: str) -> None:
-    """From the same client, while its call is under way; the call says what has ended it."""
+    """From the same client, while its call is in progress; the call's result says what ended it."""
     client = await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         calling = tasks.create_task(client.call_tool(*MOVING[what]))
@@ -185,7 +185,7 @@ async def test_stop_may_be_called_again_and_without_any_right(era: str) -> None:
 
 @pytest.mark.parametrize("what", ["move", "goal"])
 async def test_stop_ends_the_motion_of_others_by_the_policys_word_only(what: str) -> None:
-    """Without it, the answer says who moves; with it, the other's call ends."""
+    """Otherwise the answer says who moves; if allowed, the other's call ends."""
     driver = POLICY.replace('name = "other"\ntoken', 'name = "driver"\ntoken')
     async with bench_of(driver, over_http=True) as bench:
         client = await bench.connect()
@@ -217,14 +217,14 @@ async def test_stop_ends_the_motion_of_others_by_the_policys_word_only(what: str
 
 
 def httpx2_client(headers: dict[str, str]) -> Any:
-    """Return what the SDK connects with."""
+    """Return the HTTP client that the SDK uses."""
     import httpx2
 
     return httpx2.AsyncClient(headers=headers, trust_env=False, timeout=30)
 
 
 async def connect(bench: Bench, tasks: asyncio.TaskGroup, transport: Any) -> Any:
-    """Return a client that is connected until the bench closes."""
+    """Return a client that stays connected until the bench closes."""
     connected: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
     async def stay() -> None:
@@ -256,7 +256,7 @@ async def test_stop_reaches_what_the_client_moves_through_another_gateway(
 async def test_what_others_move_through_another_gateway_ends_by_its_policys_word(
     assisted: Bench,
 ) -> None:
-    """The policy that let them move says who may end it."""
+    """The policy that let them move determines who may end it."""
     driver = POLICY.replace('name = "model"', 'name = "driver"')
     async with another_assistant(assisted, driver) as other:
         client = await assisted.connect()
@@ -281,7 +281,7 @@ async def test_what_others_move_through_another_gateway_ends_by_its_policys_word
 async def test_a_gateway_that_does_not_answer_is_named(
     assisted: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What it moves goes on, and the rest was stopped."""
+    """What it moves continues, while the rest was stopped."""
     monkeypatch.setattr(_stopping, "ANSWER_SEC", 0.1)
     assisted.base.create_service(StopMotion, "/frozen/_stop", never)
     await settle()
@@ -311,7 +311,7 @@ async def another_assistant(bench: Bench, policy: str = POLICY) -> AsyncIterator
 
 
 async def test_one_mover_at_a_time(assisted: Bench, era: str) -> None:
-    """The second is told who moves, and the first goes on."""
+    """The second is told who moves, and the first continues."""
     first, second = await assisted.connect(era), await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         moving = tasks.create_task(first.call_tool(MOVE[0], {**MOVE[1], "seconds": 1}))

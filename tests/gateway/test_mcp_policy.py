@@ -1,4 +1,4 @@
-"""Each rule of the policy for an assistant: what it refuses, and what it allows."""
+"""Each policy rule for an assistant: what it refuses, and what it allows."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEASE: Final = "lease = { ttl_sec = 0.3 }\n"
 
 
 class Rule(NamedTuple):
-    """A call that one policy allows and another one refuses.
+    """A call that one policy allows and another refuses.
 
     Attributes:
         tool: The tool.
@@ -105,7 +105,7 @@ RULES: Final = {
 
 @pytest.mark.parametrize("name", RULES)
 async def test_a_rule_allows_and_refuses(name: str) -> None:
-    """The refusal says why, is in the audit log, and the robot has heard nothing."""
+    """The refusal gives the reason, is in the audit log, and the robot has received nothing."""
     rule = RULES[name]
     async with bench_of(WHO + rule.refuses) as bench:
         client = await bench.connect()
@@ -120,12 +120,12 @@ async def test_a_rule_allows_and_refuses(name: str) -> None:
 
         bench.use(WHO + rule.allows)
         allowed = await client.call_tool(rule.tool, rule.arguments)
-        # Nothing is published here, so to have waited for it is enough.
+        # Nothing is published here, so having waited for it suffices.
         assert not allowed.is_error or allowed.structured_content["code"] == "timeout"
 
 
 async def test_clamped_fields_are_within_their_limits() -> None:
-    """A rule may change what is asked for instead of refusing it."""
+    """A rule may change a request instead of refusing it."""
     clamp = f'[[allow]]\npublish = "/cmd_vel"\n{LEASE}'
     clamp += 'fields = { "linear.x" = { max = 0.1, outside = "clamp" } }\n'
     async with bench_of(WHO + clamp) as bench:
@@ -137,7 +137,7 @@ async def test_clamped_fields_are_within_their_limits() -> None:
 
 
 async def test_a_rate_slows_a_move_down_and_refuses_messages() -> None:
-    """A move fits itself in; single messages are refused beyond the rate."""
+    """A move adapts to the rate; single messages are refused beyond it."""
     rate = f'[[allow]]\npublish = "/cmd_vel"\nrate_hz = 10\n{LEASE}'
     rate += '[[allow]]\npublish = "/says"\nrate_hz = 1\n'
     async with bench_of(WHO + rate) as bench:
@@ -153,7 +153,7 @@ async def test_a_rate_slows_a_move_down_and_refuses_messages() -> None:
 
 
 async def test_a_new_policy_ends_a_move_that_it_does_not_allow(assisted: Bench, era: str) -> None:
-    """While it is under way; the robot stops."""
+    """While it is in progress; the robot stops."""
     client = await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         moving = tasks.create_task(client.call_tool("move", {**MOVE, "seconds": 9}))
@@ -165,7 +165,7 @@ async def test_a_new_policy_ends_a_move_that_it_does_not_allow(assisted: Bench, 
 
 
 async def test_the_policy_of_the_documentation_is_one() -> None:
-    """And gives the tools that it says."""
+    """It parses, and gives the tools that the page lists."""
     policy = (Path(__file__).parents[2] / "examples/gateway/assistant.toml").read_text()
     async with bench_of(policy.replace("audit_file", "# audit_file")) as bench:
         client = await bench.connect()
@@ -196,7 +196,7 @@ async def test_a_client_is_who_its_token_says() -> None:
 
 
 async def test_a_wrong_token_is_refused_at_the_door() -> None:
-    """As with all ways in."""
+    """As in all protocols."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
         httpx.AsyncClient(trust_env=False) as http,
@@ -208,7 +208,7 @@ async def test_a_wrong_token_is_refused_at_the_door() -> None:
 
 
 async def test_a_page_of_another_origin_is_refused() -> None:
-    """A browser on the robot's machine is no way in for pages."""
+    """A browser on the robot's machine must not give pages access."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
         httpx.AsyncClient(trust_env=False) as http,
@@ -220,7 +220,7 @@ async def test_a_page_of_another_origin_is_refused() -> None:
 
 
 async def test_a_session_belongs_to_who_has_begun_it() -> None:
-    """Its number alone lets nobody else use it."""
+    """Knowing its number does not let anybody else use it."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
         httpx.AsyncClient(trust_env=False) as http,
@@ -244,7 +244,7 @@ async def test_a_session_belongs_to_who_has_begun_it() -> None:
 
 
 async def test_an_assistant_is_who_it_is_started_as(node: Any) -> None:
-    """By the name of a ``[[who]]``, which has to be there."""
+    """By the name of a ``[[who]]``, which has to exist."""
     policy = Policy.parse(POLICY)
 
     assert Assistant(node, policy, name="other").identity().name == "other"
@@ -270,7 +270,7 @@ async def test_a_name_that_the_policy_knows_no_more_is_refused(era: str) -> None
 
 
 async def test_a_gateway_without_assistants_has_no_path_for_them(node: Any) -> None:
-    """It has to be asked for."""
+    """It has to be requested."""
     async with Gateway(node, port=0) as gateway, httpx.AsyncClient(trust_env=False) as http:
         answer = await http.post(f"http://127.0.0.1:{gateway.port}/mcp", json={})
         with pytest.raises(RuntimeError, match="mcp=True"):

@@ -1,4 +1,4 @@
-"""What an assistant is refused before it has a session: it is counted and said as anyone's."""
+"""Refusals of an assistant before it has a session: they are counted and logged like anyone's."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ONE_CLIENT = f"{POLICY}\n[limits]\nclients = 1\n"
 async def test_a_call_without_a_place_has_a_number_and_a_line(
     over_http: bool, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The model is told, and the robot's owner reads why its assistant does nothing."""
+    """The model is told, and the robot's owner reads why the assistant does nothing."""
     async with bench_of(ONE_CLIENT, over_http=over_http) as bench:
         client = await bench.connect()
         async with bench.clients.session(Identity("driver"), "test"):

@@ -17,7 +17,7 @@ from tests.support.waiting import until
 
 
 def tell(bench: Bench, text: str) -> None:
-    """Have the program of the robot tell an event."""
+    """Let the robot's program report an event."""
     bench.served.tell(text)
 
 
@@ -28,7 +28,7 @@ async def read(client: Any, uri: str) -> Any:
 
 
 async def test_the_robot_its_topics_and_types_are_resources(assisted: Bench, era: str) -> None:
-    """With what its owner says of it."""
+    """Including the owner's description."""
     client = await assisted.connect(era)
     listed = [each.uri for each in (await client.list_resources()).resources]
     (template,) = (await client.list_resource_templates()).resource_templates
@@ -42,7 +42,7 @@ async def test_the_robot_its_topics_and_types_are_resources(assisted: Bench, era
 
 
 async def test_the_owner_describes_the_robot(era: str) -> None:
-    """The model is told so at first."""
+    """The model is told at the beginning."""
     async with bench_of(about="A warehouse robot; keep off the red line.") as bench:
         client = await bench.connect(era)
         assert "keep off the red line" in str(client.instructions)
@@ -62,14 +62,14 @@ async def test_a_topic_is_read_as_a_resource(assisted: Bench, era: str) -> None:
 
 @pytest.mark.parametrize("uri", ["robot://topic/tekst", "robot://type/std_msgs/msg/No", "x://y"])
 async def test_what_is_not_there_is_an_error(assisted: Bench, era: str, uri: str) -> None:
-    """Of the protocol, as resources have no other."""
+    """Of the protocol, since resources have no other errors."""
     client = await assisted.connect(era)
     with pytest.raises(mcp.MCPError):
         await client.read_resource(uri)
 
 
 async def test_a_warning_of_the_robot_is_an_event(assisted: Bench, era: str) -> None:
-    """Also one that came before anybody listened."""
+    """Even one that was logged before anybody listened."""
     assisted.base.get_logger().warning("the battery is low")
     client = await assisted.connect(era)
     await read(client, "robot://events")
@@ -89,7 +89,7 @@ async def test_a_warning_of_the_robot_is_an_event(assisted: Bench, era: str) -> 
 
 
 async def test_the_log_is_for_those_who_may_read_it(era: str) -> None:
-    """What the program tells is for all."""
+    """What the program reports is for everyone."""
     policy = '[[who]]\nname = "a"\nloopback = true\n[[allow]]\nsee = "/base"\n'
     async with bench_of(policy) as bench:
         bench.base.get_logger().warning("the battery is low")
@@ -101,7 +101,7 @@ async def test_the_log_is_for_those_who_may_read_it(era: str) -> None:
 
 
 async def test_a_client_of_the_newest_revision_listens_for_events(assisted: Bench) -> None:
-    """The robot has a way to speak first."""
+    """This lets the robot speak first."""
     client = await assisted.connect()
     heard: list[Any] = []
 
@@ -121,7 +121,7 @@ async def test_a_client_of_the_newest_revision_listens_for_events(assisted: Benc
 
 
 async def test_new_tools_are_told(assisted: Bench) -> None:
-    """A service that comes later has a tool then."""
+    """A service that appears later gets a tool."""
     client = await assisted.connect()
     assisted.use(POLICY.replace('call = "/switch"', 'call = "/**"'))
     heard: list[Any] = []
@@ -146,7 +146,7 @@ async def test_new_tools_are_told(assisted: Bench) -> None:
 
 
 async def test_a_client_of_an_older_revision_subscribes_to_events(assisted: Bench) -> None:
-    """And is told of new tools, without asking."""
+    """It is also notified of new tools, without asking."""
     heard: list[str] = []
 
     async def take(message: Any) -> None:
@@ -166,7 +166,7 @@ async def test_a_client_of_an_older_revision_subscribes_to_events(assisted: Benc
 
 
 async def test_the_prompt_says_how_the_robot_moves(assisted: Bench, era: str) -> None:
-    """It is made from the policy."""
+    """It is derived from the policy."""
     client = await assisted.connect(era)
     (listed,) = (await client.list_prompts()).prompts
     prompt = await client.get_prompt(listed.name)

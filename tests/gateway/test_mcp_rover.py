@@ -1,4 +1,4 @@
-"""A transcript of tool calls drives the rover, as a model that looks for the ball would do it."""
+"""A transcript of tool calls drives the rover, like a model that looks for the ball."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ async def rover_scene(era: str) -> AsyncIterator[Scene]:
 
 
 def ball_in(picture: Any) -> float | None:
-    """Return where the ball is in an image, from -1 at the left to 1; None if it is not there."""
+    """Return where the ball is in an image, from -1 at the left to 1; None if it is not visible."""
     image = Image.open(io.BytesIO(base64.b64decode(picture.data))).convert("RGB")
     pixels = np.asarray(image).astype(int)
     orange = (pixels[..., 0] > 150) & (pixels[..., 0] - pixels[..., 2] > 90)
@@ -105,7 +105,7 @@ async def test_a_transcript_of_calls_drives_the_rover(era: str) -> None:
 
 
 async def test_a_goal_out_of_reach_says_why(era: str) -> None:
-    """The reason of the robot, which the model can act on."""
+    """The reason given by the robot, on which the model can act."""
     async with rover_scene(era) as scene:
         rejected = await scene.client.call_tool("do_drive_to", {"x": 100.0, "y": 0.0})
 

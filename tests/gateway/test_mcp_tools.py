@@ -41,7 +41,7 @@ async def refused(client: Any, tool: str, /, **arguments: Any) -> str:
 
 
 async def test_a_client_has_tools_for_what_the_policy_allows(assisted: Bench, era: str) -> None:
-    """And a tool of its own for each service and action."""
+    """And its own tool for each service and action."""
     client = await assisted.connect(era)
     names = [tool.name for tool in (await client.list_tools()).tools]
 
@@ -50,7 +50,7 @@ async def test_a_client_has_tools_for_what_the_policy_allows(assisted: Bench, er
 
 
 async def test_a_robot_without_a_policy_is_only_looked_at(era: str) -> None:
-    """Nothing is offered that would be refused."""
+    """No tool is offered whose calls would be refused."""
     async with bench_of('[[who]]\nname = "a"\nloopback = true\n[[allow]]\nsee = "/**"\n') as bench:
         client = await bench.connect(era)
         names = [tool.name for tool in (await client.list_tools()).tools]
@@ -59,7 +59,7 @@ async def test_a_robot_without_a_policy_is_only_looked_at(era: str) -> None:
 
 
 async def test_each_tool_says_what_it_may_do(assisted: Bench) -> None:
-    """Hosts ask a person by these, and their defaults are the worst case."""
+    """By these hints hosts decide whether to ask a person; the defaults are the worst case."""
     client = await assisted.connect()
     for tool in (await client.list_tools()).tools:
         hints = tool.annotations
@@ -75,14 +75,14 @@ async def test_each_tool_says_what_it_may_do(assisted: Bench) -> None:
 
 
 async def test_the_instructions_name_the_domain_and_the_nodes(assisted: Bench, era: str) -> None:
-    """A program of the desktop passes no environment on, and sees no robot in domain 0."""
+    """Desktop programs pass on no environment, and then see no robot in domain 0."""
     client = await assisted.connect(era)
 
     assert "domain 0, with 1 node." in str(client.instructions)
 
 
 async def test_list_and_describe_show_the_users_names(assisted: Bench, era: str) -> None:
-    """Not those that every node has."""
+    """Without those that every node has."""
     client = await assisted.connect(era)
     listed = await answered(client, "list")
     described = await answered(client, "describe", name="/cmd_vel")
@@ -94,7 +94,7 @@ async def test_list_and_describe_show_the_users_names(assisted: Bench, era: str)
 
 
 async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None:
-    """Those that come while it waits."""
+    """Those that arrive while it waits."""
     client = await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         reading = tasks.create_task(answered(client, "read", topic="/text", count=2))
@@ -106,7 +106,7 @@ async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None
 
 
 async def test_watch_sums_up_what_comes(assisted: Bench, era: str) -> None:
-    """Its progress says how many there were so far."""
+    """Its progress reports how many there were so far."""
     client = await assisted.connect(era)
     heard: list[str] = []
 
@@ -143,7 +143,7 @@ async def test_a_service_and_parameters_are_reached(assisted: Bench, era: str) -
 
 
 async def test_publish_sends_one_message(assisted: Bench, era: str) -> None:
-    """And waits until the subscription is matched."""
+    """It waits until the subscription is matched."""
     client = await assisted.connect(era)
     published = await answered(client, "publish", topic="/says", message={"data": "hello"})
     await until(lambda: assisted.base.heard)
@@ -161,7 +161,7 @@ async def test_publish_names_move_for_a_topic_with_commands(assisted: Bench, era
 
 
 async def test_move_is_refused_without_a_lease(assisted: Bench, era: str) -> None:
-    """Nothing says how it would stop."""
+    """Nothing defines how it would stop."""
     client = await assisted.connect(era)
 
     assert "no lease" in await refused(client, "move", topic="/says", message={}, seconds=1)
@@ -207,7 +207,7 @@ async def test_a_mistake_says_what_fits(
 
 
 async def test_an_endless_answer_is_cut(assisted: Bench, era: str) -> None:
-    """Texts and lists end in how much there was of them."""
+    """Truncated texts and lists end with their full length."""
     client = await assisted.connect(era)
     result = await client.call_tool("call_switch", {"data": True})
 
@@ -254,7 +254,7 @@ async def test_many_services_have_one_tool(era: str) -> None:
 
 
 async def test_a_recording_is_summed_up(era: str, tmp_path: Path) -> None:
-    """Only those of the folder: no path leads out of it."""
+    """Only those in the folder: no path leads out of it."""
     with BagWriter(tmp_path / "bags/run") as writer:
         for number in range(3):
             writer.write_message("/text", String(data="x"), Time(nanoseconds=number * 10**9))
@@ -278,7 +278,7 @@ NAMES = st.from_regex(r"(/[a-z_][a-z0-9_]{0,30}){1,5}", fullmatch=True)
 
 @given(names=st.lists(NAMES, unique=True, max_size=20))
 def test_names_of_tools_are_short_and_unique(names: list[str]) -> None:
-    """Whatever else the robot offers, each has the same one."""
+    """Each name stays the same, whatever else the robot offers."""
     made = [tool_name("call", name) for name in names]
 
     assert len(set(made)) == len(names)
@@ -294,7 +294,7 @@ JSON = st.recursive(
 
 @given(values=st.dictionaries(st.text(), JSON), times=st.integers(1, 2000))
 def test_answers_are_bounded(values: dict[str, Any], times: int) -> None:
-    """By what they are as JSON."""
+    """By their size as JSON."""
     longer = {"values": [values] * times}
 
     assert (

@@ -1,4 +1,4 @@
-"""NaN, infinities and null for a number: what a client may not send to the robot."""
+"""NaN, infinities and null instead of numbers: what a client may not send to the robot."""
 
 from __future__ import annotations
 
@@ -93,10 +93,10 @@ ASKS = {
 async def test_a_number_that_is_not_finite_is_refused(
     gateway: Gateway, robot: Robot, way: str, ask: str
 ) -> None:
-    """A controller carries it on to the motors, whatever it was that moves them."""
+    """A controller would pass it on to the motors, whatever sent it."""
     verb, name, type_name, values = ASKS[ask]
     if (way, verb) == ("foxglove", "goal") or (way == "events" and verb != "goal"):
-        return  # these ways in have none
+        return  # these protocols have none
     async with way_in(way, gateway.port, {}) as client:
         answer = await client.do(Ask(verb, name, type_name, values, lambda: bool(robot.told)))
 
@@ -108,7 +108,7 @@ async def test_a_number_that_is_not_finite_is_refused(
 async def test_neither_the_bytes_of_a_command_hide_it_nor_a_policy_without_fields(
     bench: Bench, rules: str
 ) -> None:
-    """Raw CDR has not been through any JSON; ``clamp`` would make full speed of an infinity."""
+    """Raw CDR has not been parsed as JSON; ``clamp`` would turn an infinity into full speed."""
     got: list[Twist] = []
     bench.node.create_subscription(Twist, "/cmd_vel", got.append)
     bench.allow(RULES[rules])
@@ -124,7 +124,7 @@ async def test_neither_the_bytes_of_a_command_hide_it_nor_a_policy_without_field
 
 
 async def test_numbers_in_arrays_and_nested_messages_count(bench: Bench) -> None:
-    """A trajectory has them in arrays of messages in an array."""
+    """A trajectory contains them in arrays of messages in an array."""
     point = JointTrajectoryPoint(positions=[0.0, 1.0], velocities=[0.0, math.nan])
     async with bench.session() as session:
         with pytest.raises(RefusedError, match=r"points\.velocities is nan"):
@@ -135,7 +135,7 @@ async def test_numbers_in_arrays_and_nested_messages_count(bench: Bench) -> None
 
 
 def test_a_text_that_says_null_is_no_number() -> None:
-    """Numbers are looked for as JSON first, in which they are null."""
+    """Numbers are first searched for in JSON, where they are null."""
     for text in ("null", "\udcff"):
         check_finite(TwistStamped(header=Header(frame_id=text)))
         with pytest.raises(OutOfLimitsError, match=r"twist\.linear\.x is nan"):
@@ -145,7 +145,7 @@ def test_a_text_that_says_null_is_no_number() -> None:
 
 
 async def test_a_scan_may_have_infinities_unless_it_commands(bench: Bench) -> None:
-    """There they say that nothing reflects, by REP 117; under a lease a message is a command."""
+    """In a scan they mean that nothing reflects (REP 117); under a lease a message is a command."""
     got: list[LaserScan] = []
     bench.node.create_subscription(LaserScan, "/scan", got.append)
     scan = LaserScan(ranges=[1.0, math.inf, math.nan])
@@ -160,7 +160,7 @@ async def test_a_scan_may_have_infinities_unless_it_commands(bench: Bench) -> No
 
 
 async def test_a_policy_may_let_them_pass(bench: Bench) -> None:
-    """A set point of PX4 says by NaN that a field is not set."""
+    """A PX4 set point marks unset fields with NaN."""
     got: list[float] = []
     bench.node.create_subscription(Float64, "/set_point", lambda msg: got.append(msg.data))
     bench.allow("[[allow]]\npublish = '/set_point'\nfinite = false\n")
@@ -172,7 +172,7 @@ async def test_a_policy_may_let_them_pass(bench: Bench) -> None:
 
 
 async def test_a_parameter_is_finite(gateway: Gateway, robot: Robot) -> None:
-    """By itself, and by a call of the service that sets parameters."""
+    """By itself, and in a call of the service that sets parameters."""
     value = {"name": "speed", "value": {"type": 3, "double_value": "Infinity"}}
     call = ("call", "/robot/set_parameters", "rcl_interfaces/srv/SetParameters")
     for way in ("rosbridge", "http", "foxglove"):
@@ -192,7 +192,7 @@ NULL = {"linear": {"x": None}}
 
 
 async def test_null_moves_nothing_over_a_websocket(gateway: Gateway, robot: Robot) -> None:
-    """What ``JSON.stringify`` makes of a NaN; the command behind it is the first that arrives."""
+    """``JSON.stringify`` turns NaN into null; the command after it is the first that arrives."""
     url = f"ws://127.0.0.1:{gateway.port}"
     async with connect(url, proxy=None) as page:
         await page.send(json.dumps({"op": "set_level", "level": "error"}))

@@ -41,7 +41,7 @@ def values(part: Any, key: str) -> Iterator[Any]:
 
 
 def test_a_path_has_only_what_the_caller_may_do() -> None:
-    """The document is the answer to what a client can do."""
+    """The document tells a client what it can do."""
     paths = document()["paths"]
 
     assert set(paths["/topics/cmd_vel"]) == {"post"}
@@ -52,7 +52,7 @@ def test_a_path_has_only_what_the_caller_may_do() -> None:
 
 
 def test_every_reference_leads_to_a_schema() -> None:
-    """Generators stop at one that does not."""
+    """Generators stop at a broken one."""
     whole = document()
     schemas = whole["components"]["schemas"]
 
@@ -71,7 +71,7 @@ def test_the_ids_of_operations_are_unique() -> None:
 
 
 def test_a_body_has_the_json_form_of_the_gateway() -> None:
-    """Bytes are Base64, and null stands for NaN, in an array as well."""
+    """Bytes are Base64, and null stands for NaN, including in arrays."""
     schemas = document()["components"]["schemas"]
 
     image = schemas["sensor_msgs.msg.Image"]["properties"]
@@ -92,7 +92,7 @@ def test_a_body_has_the_json_form_of_the_gateway() -> None:
 
 
 def test_a_body_that_is_sent_has_no_null() -> None:
-    """The gateway refuses it, as JavaScript writes it for a NaN that nobody meant."""
+    """The gateway refuses it, since JavaScript writes null for an accidental NaN."""
     whole = document()
     schemas = whole["components"]["schemas"]
     pose = schemas["geometry_msgs.msg.PoseWithCovarianceStamped.sent"]["properties"]
@@ -106,7 +106,7 @@ def test_a_body_that_is_sent_has_no_null() -> None:
 
 
 def test_an_image_is_also_a_picture() -> None:
-    """So a page knows that it can show it."""
+    """So that a page knows that it can show it."""
     (answer,) = (document()["paths"]["/topics/camera/image"]["get"]["responses"]["200"],)
 
     assert set(answer["content"]) == {

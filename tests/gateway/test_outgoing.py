@@ -1,4 +1,4 @@
-"""Frames leave a WebSocket framed once for all clients, large ones in slices."""
+"""Frames of a WebSocket are framed once for all clients, and large ones are sent in slices."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LARGE = bytes(range(256)) * 16 * 1024  # 4 MiB
 
 
 class Transport(asyncio.Transport):
-    """Takes what is written, and keeps it waiting while it is told to."""
+    """Accepts what is written, and buffers it while told to."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -32,11 +32,11 @@ class Transport(asyncio.Transport):
         self.is_aborted = self.is_closed = False
 
     def write(self, data: Any) -> None:
-        """Take bytes."""
+        """Accept bytes."""
         self.written.append(bytes(data))
 
     def get_write_buffer_size(self) -> int:
-        """Return how much waits."""
+        """Return the number of buffered bytes."""
         return self.waiting
 
     def is_closing(self) -> bool:
@@ -48,12 +48,12 @@ class Transport(asyncio.Transport):
         self.is_closed = True
 
     def abort(self) -> None:
-        """Close it at once."""
+        """Close it immediately."""
         self.is_aborted = True
 
 
 class Connection:
-    """What a frame leaves through."""
+    """A connection through which frames are sent."""
 
     def __init__(self) -> None:
         self.transport = Transport()
@@ -67,7 +67,7 @@ class Connection:
 
     @property
     def sent(self) -> bytes:
-        """All that has left."""
+        """Everything sent so far."""
         return b"".join(self.transport.written)
 
 
@@ -78,7 +78,7 @@ async def connection() -> Connection:
 
 
 def whole(frame: bytes | str) -> bytes:
-    """Return a frame as another library makes it."""
+    """Return a frame as created by another library."""
     is_text = isinstance(frame, str)
     payload = frame.encode() if isinstance(frame, str) else frame
     made = WebSocketFrame(Opcode.TEXT if is_text else Opcode.BINARY, payload)
@@ -88,14 +88,14 @@ def whole(frame: bytes | str) -> bytes:
 @pytest.mark.parametrize("size", [0, 1, 125, 126, 65535, 65536, SLICE, SLICE + 1])
 @pytest.mark.parametrize("kind", ["text", "bytes"])
 def test_frames_are_those_of_the_protocol(size: int, kind: str) -> None:
-    """Each length has its head."""
+    """Each length has its header."""
     frame = "x" * size if kind == "text" else b"x" * size
 
     assert b"".join(Framing().parts(frame)) == whole(frame)
 
 
 def test_a_frame_is_made_once_for_all_clients() -> None:
-    """Clients get one message one after another; its text is encoded once."""
+    """Clients get one message after another; its text is encoded once."""
     framing, frame = Framing(), "x" * 1000
 
     assert framing.parts(frame) is framing.parts(frame)
@@ -103,7 +103,7 @@ def test_a_frame_is_made_once_for_all_clients() -> None:
 
 
 async def test_a_large_frame_leaves_in_slices_while_the_loop_turns(connection: Connection) -> None:
-    """Nothing of it is copied, and other clients have their turns meanwhile."""
+    """Nothing of it is copied, and other clients get their turns meanwhile."""
     connection.send(LARGE)
     before = len(connection.sent)
     await connection.writable.wait()
@@ -114,7 +114,7 @@ async def test_a_large_frame_leaves_in_slices_while_the_loop_turns(connection: C
 
 
 async def test_no_more_leaves_than_the_client_reads(connection: Connection) -> None:
-    """Else the transport would have to keep all of it."""
+    """Otherwise the transport would have to buffer all of it."""
     connection.outgoing.pause()
     connection.outgoing.send(Framing().parts(LARGE))
     await checkpoint()
@@ -129,7 +129,7 @@ async def test_no_more_leaves_than_the_client_reads(connection: Connection) -> N
 
 
 async def test_nothing_is_written_within_the_transports_own_call(connection: Connection) -> None:
-    """Asyncio ends a connection twice that breaks then, and says so with a traceback."""
+    """Asyncio ends a connection twice if it breaks then, and logs a traceback."""
     connection.outgoing.pause()
     connection.send(LARGE)
     before = len(connection.sent)
@@ -140,7 +140,7 @@ async def test_nothing_is_written_within_the_transports_own_call(connection: Con
 
 @pytest.mark.parametrize("is_text", [False, True])
 async def test_a_long_frame_leaves_in_its_pieces(connection: Connection, is_text: bool) -> None:
-    """Nothing puts them together before."""
+    """They are not joined before."""
     pieces = [b"a" * 10, b"b" * (SLICE + 1), b"c" * 10]
     connection.outgoing.send(Framing().parts(LongFrame(pieces, is_text=is_text)))
     await connection.writable.wait()
@@ -151,7 +151,7 @@ async def test_a_long_frame_leaves_in_its_pieces(connection: Connection, is_text
 
 
 async def test_pongs_leave_after_the_frame_that_is_leaving(connection: Connection) -> None:
-    """Within a frame they would be a part of the message."""
+    """Within a frame they would be part of the message."""
     connection.send(LARGE)
     connection.outgoing.write(b"pong")
     await connection.writable.wait()
@@ -160,7 +160,7 @@ async def test_pongs_leave_after_the_frame_that_is_leaving(connection: Connectio
 
 
 async def test_a_client_that_reads_no_pongs_is_disconnected(connection: Connection) -> None:
-    """It would have the gateway keep all of them."""
+    """Otherwise the gateway would have to buffer all of them."""
     connection.send(LARGE)
     for _ in range(MOST_CONTROL_BYTES // 100 + 2):
         connection.outgoing.write(b"x" * 100)
@@ -171,7 +171,7 @@ async def test_a_client_that_reads_no_pongs_is_disconnected(connection: Connecti
 async def test_a_frame_that_is_leaving_is_whole_when_the_connection_is_closed(
     connection: Connection,
 ) -> None:
-    """The word of the end stands behind it, as the protocol has it."""
+    """The close frame follows it, as the protocol requires."""
     connection.send(LARGE)
     connection.outgoing.write(b"closing")
     connection.outgoing.close()
@@ -182,7 +182,7 @@ async def test_a_frame_that_is_leaving_is_whole_when_the_connection_is_closed(
 
 
 async def test_nothing_leaves_into_a_connection_that_is_gone(connection: Connection) -> None:
-    """The transport would warn of it."""
+    """The transport would log a warning."""
     connection.send(LARGE)
     connection.transport.abort()
     before = len(connection.sent)

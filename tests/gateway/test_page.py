@@ -1,4 +1,4 @@
-"""The page in a browser: what it shows, what it changes, and that driving ends with it."""
+"""The page in a browser: what it shows, what it changes, and that closing it ends driving."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ pytestmark = [
 
 
 def driving(ttl_sec: float = 30.0) -> Policy:
-    """Return a policy by which a page drives, also where a busy machine lets it wait."""
+    """Return a policy by which a page may drive, even if a busy machine delays it."""
     return Policy.parse(f"""
         [[who]]
         name = "operator"
@@ -64,7 +64,7 @@ class Scene(NamedTuple):
 
     @property
     def speeds(self) -> list[float]:
-        """What the robot was told to drive, in m/s."""
+        """The commanded speeds, in m/s."""
         return [command.linear.x for command in self.commands]
 
 
@@ -91,7 +91,7 @@ async def scene(
 
 @asynccontextmanager
 async def relay(port: int, network: asyncio.Event) -> AsyncIterator[int]:
-    """Yield a port that leads to another one while an event is set, and is silent otherwise."""
+    """Yield a port that forwards to another one while an event is set, and is silent otherwise."""
 
     async def copy(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with suppress(ConnectionError):
@@ -124,14 +124,14 @@ async def hold(page: Page) -> None:
 
 
 async def until(node: Node, condition: Callable[[], bool]) -> None:
-    """Look again and again whether something has happened, for 20 s at most."""
+    """Check repeatedly whether something has happened, for at most 20 s."""
     async with asyncio.timeout(20):
         while not condition():
             await node.get_clock().sleep(0.02)
 
 
 async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
-    """Rates, values, plots, pictures and the log, from this gateway alone."""
+    """Rates, values, plots, pictures and the log, all from this gateway."""
     async with scene(context) as (page, robot, *_):
         await connected(page)
         await page.click("#topics tr[data-topic='/odom']")
@@ -152,7 +152,7 @@ async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
 
 
 async def test_the_page_sets_parameters_and_calls_services(context: Context) -> None:
-    """What the node refuses is shown with its reason."""
+    """The node's reason for a refusal is shown."""
     async with scene(context) as (page, robot, *_):
         await connected(page)
         robot.x = 5.0
@@ -190,7 +190,7 @@ async def test_letting_go_stops(context: Context) -> None:
 
 
 async def test_the_stop_button_ends_driving(context: Context) -> None:
-    """Also while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
+    """Even while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
         await hold(page)
@@ -207,7 +207,7 @@ async def test_the_stop_button_ends_driving(context: Context) -> None:
 
 
 async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
-    """Nobody lets the pad go: the gateway ends the lease of a client that has left."""
+    """Nobody releases the pad: the gateway ends the lease of a client that has left."""
     async with scene(context, driving()) as (page, robot, gateway, commands, _):
         await connected(page)
         await hold(page)
@@ -219,7 +219,7 @@ async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
 
 
 async def test_hiding_the_tab_stops(context: Context) -> None:
-    """The page itself stops: a browser lets the scripts of hidden tabs run once a second."""
+    """The page itself stops: browsers run the scripts of hidden tabs only once a second."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
         await hold(page)
@@ -231,7 +231,7 @@ async def test_hiding_the_tab_stops(context: Context) -> None:
 
 
 async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) -> None:
-    """Browsers do so to save power; the page hears of it, and its timers stand still."""
+    """Browsers do so to save power; the page is notified, and its timers stand still."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
         await connected(page)
         await hold(page)
@@ -243,9 +243,9 @@ async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) 
 
 
 async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
-    """Neither end is told: the gateway sends the stop after the time to live.
+    """Neither end is notified: the gateway sends the stop after the time to live.
 
-    What the page has sent meanwhile is refused when the network is back.
+    Commands that the page has sent meanwhile are refused when the network is back.
     """
     async with scene(context, driving(ttl_sec=0.3), is_cuttable=True) as whole:
         page, robot, gateway, commands, network = whole
@@ -263,7 +263,7 @@ async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
 
 
 async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
-    """A script that never ends sends nothing: the gateway sends the stop after the time to live."""
+    """A script that never returns sends nothing: the gateway stops after the time to live."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
         await connected(page)
         await hold(page)
@@ -275,7 +275,7 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
 
 
 async def test_a_key_drives_while_it_is_held(context: Context) -> None:
-    """Also with commands that have a stamp, which the gateway sets by the robot's clock."""
+    """Also with stamped commands; the gateway sets the stamp by the robot's clock."""
     policy = Policy.default(allow_write=True)
     stamped: list[TwistStamped] = []
     async with scene(context, policy) as (page, robot, *_):
@@ -315,7 +315,7 @@ SHOWN = {
 
 
 async def test_pictures_are_those_that_the_gateway_makes(context: Context) -> None:
-    """The rules stand twice, in JavaScript and in Python; a pixel may differ by rounding."""
+    """The same rules exist in JavaScript and in Python; a pixel may differ by rounding."""
     random = np.random.default_rng(7)
     async with scene(context) as (page, *_):
         await connected(page)
@@ -334,7 +334,7 @@ async def test_pictures_are_those_that_the_gateway_makes(context: Context) -> No
 
 
 def drawn(message: Image) -> str:
-    """Return what has a page draw an image, as a list of reds, greens, blues and alphas."""
+    """Return a script that makes a page draw an image, as lists of red, green, blue and alpha."""
     fields = f"""{{
         width: {message.width}, height: {message.height}, step: {message.step},
         encoding: {message.encoding!r}, is_bigendian: {message.is_bigendian},
@@ -344,7 +344,7 @@ def drawn(message: Image) -> str:
 
 
 async def test_pictures_have_their_colours(context: Context) -> None:
-    """Raw, with no number in it, and compressed."""
+    """Raw, without a number in it, and compressed."""
     red = np.full((60, 80, 3), (200, 30, 0), np.uint8)
     depth = np.full((60, 80), 2.0, np.float32)
     depth[0, 0], depth[0, 1], depth[0, 2] = np.nan, 1.0, 3.0
@@ -372,7 +372,7 @@ async def test_pictures_have_their_colours(context: Context) -> None:
 
 
 async def test_a_second_page_is_told_who_drives(context: Context) -> None:
-    """Its pad is let go, as its commands have no effect."""
+    """Its pad is released, because its commands have no effect."""
     async with scene(context, driving()) as (page, robot, _, commands, _), chromium() as other:
         await connected(page)
         await hold(page)
@@ -388,7 +388,7 @@ async def test_a_second_page_is_told_who_drives(context: Context) -> None:
 
 
 async def test_the_page_asks_for_a_token(context: Context) -> None:
-    """A token after the number sign of its address is enough; that of a user is typed in."""
+    """A token after the number sign of its address suffices; a user types theirs in."""
     policy = Policy.parse("""
         [[who]]
         name = "operator"

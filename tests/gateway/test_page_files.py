@@ -1,4 +1,4 @@
-"""The files of the page, as a browser asks for them."""
+"""The files of the page, as requested by a browser."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ async def web(node: Node) -> AsyncIterator[httpx.AsyncClient]:
 async def test_the_page_and_all_that_it_needs_come_from_the_gateway(
     web: httpx.AsyncClient,
 ) -> None:
-    """It works where there is no Internet."""
+    """It works without Internet access."""
     places, seen = [httpx.URL("/")], set()
     while places:
         place = places.pop()
@@ -49,7 +49,7 @@ async def test_the_page_and_all_that_it_needs_come_from_the_gateway(
 
 
 async def test_a_browser_runs_nothing_else_on_the_page(web: httpx.AsyncClient) -> None:
-    """A text of the robot, or a page around this one, can drive nothing."""
+    """Neither a text of the robot nor a page around this one can drive anything."""
     answer = await web.get("/")
 
     policy = answer.headers["content-security-policy"]
@@ -60,14 +60,14 @@ async def test_a_browser_runs_nothing_else_on_the_page(web: httpx.AsyncClient) -
 
 @pytest.mark.parametrize("name", ["nothing.js", "..%2f__init__.py", "%2fetc%2fpasswd"])
 async def test_other_files_are_not_served(web: httpx.AsyncClient, name: str) -> None:
-    """A name is looked up among the files of the page, and never opened."""
+    """A name is looked up among the files of the page, and never opened as a path."""
     assert (await web.get(f"/page/{name}")).status_code == 404
 
 
 async def test_a_path_that_is_not_there_is_answered_with_what_to_do(
     web: httpx.AsyncClient,
 ) -> None:
-    """Behind a proxy that keeps its prefix, nothing else explains an empty page."""
+    """Behind a proxy that keeps its prefix, nothing else would explain an empty page."""
     answer = await web.get("/robot/page/main.js")
 
     assert answer.status_code == 404
@@ -77,7 +77,7 @@ async def test_a_path_that_is_not_there_is_answered_with_what_to_do(
 async def test_a_websocket_at_another_path_is_answered_with_what_to_do(
     web: httpx.AsyncClient,
 ) -> None:
-    """Not with a 403 without a word."""
+    """Not with a bare 403."""
     address = str(web.base_url.copy_with(scheme="ws", path="/robot/"))
     with pytest.raises(InvalidStatus) as refused:
         await connect(address)
@@ -87,7 +87,7 @@ async def test_a_websocket_at_another_path_is_answered_with_what_to_do(
 
 
 async def test_a_post_tells_the_page_why_its_websocket_is_refused(web: httpx.AsyncClient) -> None:
-    """Browsers hide the answer to a WebSocket; the origin is public behind a proxy with TLS."""
+    """Browsers hide the answer to a WebSocket; the origin is public behind a TLS proxy."""
     refused = await web.post("/healthz", headers={"Origin": "https://robot.example.org"})
     passed = await web.post("/healthz", headers={"Origin": str(web.base_url)})
 
@@ -98,7 +98,7 @@ async def test_a_post_tells_the_page_why_its_websocket_is_refused(web: httpx.Asy
 
 @pytest.mark.parametrize("path", ["/page/main.js", "/page/style.css"])
 async def test_the_page_comes_whatever_its_origin_is(web: httpx.AsyncClient, path: str) -> None:
-    """Browsers show one with scripts: behind a proxy the page could not say why it is refused."""
+    """Browsers send it with scripts: behind a proxy the page could not explain the refusal."""
     origin = {"Origin": "https://robot.example.org", "Sec-Fetch-Site": "same-origin"}
 
     whole = await web.get(path, headers=origin)

@@ -49,12 +49,12 @@ class DriveTo(ActionType, typename="rover_interfaces/action/DriveTo"):
         y: float64 = 0.0
 
     class Result(Message):
-        """Nothing."""
+        """Empty."""
 
         driven: float64 = 0.0
 
     class Feedback(Message):
-        """The rest."""
+        """The remaining distance."""
 
         distance_left: float64 = 0.0
 
@@ -69,7 +69,7 @@ async def page_of(node: Node, policy: Policy = WRITING) -> AsyncIterator[Page]:
 
 
 def place(node: Node, child: str, parent: str, x: float, y: float) -> None:
-    """Publish where a frame is, for good."""
+    """Publish the pose of a frame, as a static transform."""
     transform = TransformStamped(child_frame_id=child)
     transform.header.frame_id = parent
     transform.transform.translation.x = x
@@ -79,7 +79,7 @@ def place(node: Node, child: str, parent: str, x: float, y: float) -> None:
 
 
 async def tick(page: Page, selector: str) -> None:
-    """Tick a box that is there, or soon will be."""
+    """Tick a checkbox that exists, or will soon."""
     await page.until(f"document.querySelector({selector!r})")
     await page.value(f"document.querySelector({selector!r}).click(); 1")
 
@@ -95,7 +95,7 @@ async def show(page: Page, topic: str) -> None:
 
 
 async def reds(page: Page) -> int:
-    """Return how many pixels of the view from above have the first colour of layers."""
+    """Return how many pixels of the view from above have the first layer's colour."""
     return int(
         await page.value(
             "(() => { const c = document.querySelector('#scene canvas');"
@@ -108,7 +108,7 @@ async def reds(page: Page) -> int:
 
 
 def scan() -> LaserScan:
-    """Return a scan of a wall around, with two beams that saw nothing."""
+    """Return a scan of a surrounding wall, with two beams that hit nothing."""
     message = LaserScan(angle_min=-3.0, angle_increment=0.1, range_min=0.1, range_max=9.0)
     message.header.frame_id = "lidar"
     message.ranges = np.array([2.0] * 58 + [np.inf, np.nan], np.float32)
@@ -116,7 +116,7 @@ def scan() -> LaserScan:
 
 
 def cloud() -> PointCloud2:
-    """Return three points, of which one is none."""
+    """Return three points, one of them invalid."""
     message = PointCloud2(height=1, width=3, point_step=16, row_step=48)
     message.header.frame_id = "lidar"
     message.fields = [
@@ -148,7 +148,7 @@ def path() -> Path:
 
 
 def odometry() -> Odometry:
-    """Return where the robot is."""
+    """Return the pose of the robot."""
     message = Odometry()
     message.header.frame_id = "map"
     message.pose.pose.orientation.w = 1.0
@@ -162,7 +162,7 @@ MESSAGES: dict[str, Any] = {
 
 @pytest.mark.parametrize("topic", MESSAGES)
 async def test_a_layer_is_drawn_from_above(node: Node, topic: str) -> None:
-    """In the fixed frame, which the transforms lead to."""
+    """In the fixed frame, to which the transforms lead."""
     message = MESSAGES[topic]()
     place(node, "base_link", "map", 1.0, 0.0)
     place(node, "lidar", "base_link", 0.2, 0.0)
@@ -176,7 +176,7 @@ async def test_a_layer_is_drawn_from_above(node: Node, topic: str) -> None:
 
 
 async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
-    """Without a transform, and with a map whose size is not that of its data."""
+    """Without a transform, or with a map whose size does not match its data."""
     lost, wrong = odometry(), grid()
     lost.header.frame_id = "<b>elsewhere</b>"
     wrong.info.width = 7
@@ -198,7 +198,7 @@ async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
 
 
 async def test_what_nobody_looks_at_is_not_subscribed(node: Node) -> None:
-    """A robot publishes many transforms and large clouds; the list of topics measures neither."""
+    """A robot publishes many transforms and large clouds; the topic list measures neither."""
     publisher = node.create_publisher(PointCloud2, "/points", 1)
     async with page_of(node) as page:
         await page.until("document.querySelector('#scene .layers input')")
@@ -219,7 +219,7 @@ async def drag(page: Page) -> None:
 
 
 async def test_a_click_sends_a_goal_pose(node: Node) -> None:
-    """Where the pointer was pressed, facing where it was let go; one click is one goal."""
+    """Where the pointer was pressed, facing where it was released; one click is one goal."""
     got: list[PoseStamped] = []
     node.create_subscription(PoseStamped, "/goal_pose", got.append, 10)
     place(node, "base_link", "map", 1.0, 0.0)
@@ -265,7 +265,7 @@ async def test_a_click_sends_the_goal_of_an_action(node: Node) -> None:
 
 
 async def test_a_goal_that_the_policy_refuses_is_told(node: Node) -> None:
-    """The page only asks; the gateway decides."""
+    """The page only requests it; the gateway decides."""
     got: list[PoseStamped] = []
     node.create_subscription(PoseStamped, "/goal_pose", got.append, 10)
     node.create_publisher(Odometry, "/odom", LATCHED).publish(odometry())
@@ -294,7 +294,7 @@ URDF = f"""<robot name="r"><material name="red"><color rgba="1 0 0 1"/></materia
   <parent link="base_link"/><child link="arm"/><origin xyz="0 0 0.5"/>
 </joint>
 </robot>"""
-"""A model of all shapes; its arm has a joint and no transform, and one mesh is not allowed."""
+"""A model with all shapes; its arm has a joint without a transform, and one mesh is not allowed."""
 
 DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema">
 <asset><unit meter="0.1"/><up_axis>Z_UP</up_axis></asset>
@@ -325,7 +325,7 @@ def package(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("package")
 async def test_the_model_is_drawn_in_space(node: Node) -> None:
-    """Boxes, cylinders, spheres and meshes; one that the policy does not serve is named."""
+    """Boxes, cylinders, spheres and meshes; a mesh that the policy does not serve is named."""
     node.create_publisher(String, "/robot_description", LATCHED).publish(String(data=URDF))
     place(node, "base_link", "odom", 1.0, 0.0)
     place(node, "flag", "odom", 0.0, 0.0)
@@ -375,7 +375,7 @@ async def test_meshes_are_read(node: Node) -> None:
 
 
 async def test_frames_are_shown_as_a_tree(node: Node) -> None:
-    """With their places in their parents; a name of the robot is text."""
+    """With their poses in their parents; names of the robot are shown as text."""
     place(node, "base_link", "map", 1.0, 2.0)
     place(node, "<i>lidar", "base_link", 0.25, 0.0)
     async with page_of(node) as page:
@@ -392,7 +392,7 @@ async def test_frames_are_shown_as_a_tree(node: Node) -> None:
 
 
 async def test_transforms_in_a_circle_end(node: Node) -> None:
-    """Two programs may each say that the other's frame is the parent."""
+    """Two programs may each claim that the other's frame is the parent."""
     place(node, "a", "b", 1.0, 0.0)
     place(node, "b", "a", 1.0, 0.0)
     message = odometry()
@@ -404,7 +404,7 @@ async def test_transforms_in_a_circle_end(node: Node) -> None:
 
 
 async def test_there_may_be_several_plots_and_pictures(node: Node) -> None:
-    """Each picture has its own topic; numbers go to the newest plot."""
+    """Each picture has its own topic; numbers are added to the newest plot."""
     for number, name in enumerate(("/left", "/right")):
         image = from_numpy(np.full((4 + number, 6, 3), 90, np.uint8), "rgb8")
         node.create_publisher(type(image), name, LATCHED).publish(image)

@@ -1,4 +1,4 @@
-"""What the policy hides of parameters, and of the audit log: no other way shows it."""
+"""Parameters and audit logs that the policy hides are not revealed in any other way."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ subscribe = "/**"
 
 @pytest.fixture
 async def camera(bench: Bench) -> AsyncIterator[Node]:
-    """Yield a node with a parameter that may be seen, and one that may not."""
+    """Yield a node with one parameter that may be seen, and one that may not."""
     bench.allow(POLICY)
     async with Node("camera", context=bench.context) as camera:
         camera.declare_parameter("exposure", 0.5)
@@ -44,7 +44,7 @@ async def camera(bench: Bench) -> AsyncIterator[Node]:
 async def test_a_service_tells_nothing_of_a_parameter_that_is_hidden(
     bench: Bench, camera: Node, part: str
 ) -> None:
-    """Reading by a call is reading."""
+    """Reading by a call counts as reading."""
     async with bench.session() as session:
         service = f"/camera/{part}"
         response = await session.call(service, {"names": ["exposure"]})
@@ -54,7 +54,7 @@ async def test_a_service_tells_nothing_of_a_parameter_that_is_hidden(
 
 
 async def test_a_list_leaves_out_parameters_that_are_hidden(bench: Bench, camera: Node) -> None:
-    """And prefixes that only these have."""
+    """As are prefixes that only these have."""
     async with bench.session() as session:
         result = (await session.call("/camera/list_parameters", {})).result
 
@@ -63,7 +63,7 @@ async def test_a_list_leaves_out_parameters_that_are_hidden(bench: Bench, camera
 
 
 async def test_who_may_only_call_reads_no_parameters(bench: Bench, camera: Node) -> None:
-    """As who may call cannot set them, either: the rules for parameters decide."""
+    """Nor may such a client set them by a call: the rules for parameters decide."""
     bench.allow('[[who]]\nname = "guest"\nloopback = true\n[[allow]]\ncall = "/**"')
     async with bench.session() as session:
         with pytest.raises(RefusedError, match="see /camera:exposure"):
@@ -74,7 +74,7 @@ async def test_who_may_only_call_reads_no_parameters(bench: Bench, camera: Node)
 
 
 async def test_events_leave_out_parameters_that_are_hidden(bench: Bench, camera: Node) -> None:
-    """They have the values, so that to subscribe to them would be to read them."""
+    """They contain the values, so subscribing to them would reveal them."""
     got: list[dict[str, Any]] = []
     async with bench.session() as session:
         await session.subscribe(
@@ -98,7 +98,7 @@ async def test_events_leave_out_parameters_that_are_hidden(bench: Bench, camera:
 
 
 async def test_an_event_that_is_none_is_left_out(bench: Bench, camera: Node) -> None:
-    """Any node may publish some bytes there, and a client gets none that were not looked at."""
+    """Any node may publish arbitrary bytes there, and clients only get events that were checked."""
     got: list[object] = []
     async with bench.session() as session:
         subscribed = await session.subscribe(
@@ -115,7 +115,7 @@ async def test_an_event_that_is_none_is_left_out(bench: Bench, camera: Node) -> 
 
 
 async def test_a_pattern_does_not_show_the_audit_log(bench: Bench) -> None:
-    """It has the arguments of all clients, also those that the policy hides from each other."""
+    """It contains all clients' arguments, even those that the policy hides from others."""
     async with bench.session() as session:
         await settle()
         for rule in ('subscribe = "/**"', 'subscribe = ["/gateway/*", "/gateway/audi?"]'):

@@ -1,4 +1,4 @@
-"""The policy: which rule decides, what a field may be, and which files are refused."""
+"""The policy: which rule decides, which field values are allowed, and which files are refused."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ clients = 5
 
 
 def credentials(**given: object) -> Credentials:
-    """Return what a program on this host shows."""
+    """Return the credentials of a program on this host."""
     shown: dict[str, object] = {"address": "127.0.0.1", "host": "localhost:9090"}
     return Credentials(**(shown | given))  # type: ignore[arg-type]  # as given
 
@@ -82,13 +82,13 @@ def policy() -> Policy:
 
 @given(verb=st.sampled_from(VERBS), name=NAMES)
 def test_what_no_rule_allows_is_refused(verb: Verb, name: str) -> None:
-    """A policy that forgets something must not allow it."""
+    """A policy that omits something must not allow it."""
     assert not Policy().decide(OPERATOR, verb, name, "").allowed
 
 
 @given(verb=st.sampled_from(VERBS), name=NAMES, other=NAMES)
 def test_a_rule_allows_its_verb_and_its_name_only(verb: Verb, name: str, other: str) -> None:
-    """Each verb is allowed by its own rule, and to see the name comes with it."""
+    """Each verb is allowed by its own rule, which also lets the client see the name."""
     policy = Policy(allow=[Rule(**{verb: name})])  # type: ignore[arg-type]  # a name each
 
     for asked in VERBS:
@@ -100,7 +100,7 @@ def test_a_rule_allows_its_verb_and_its_name_only(verb: Verb, name: str, other: 
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_a_rule_about_topics_shows_no_node(verb: Verb) -> None:
-    """Who reads all topics must not read all parameters, which may have passwords."""
+    """A client that reads all topics must not read all parameters, which may contain passwords."""
     policy = Policy(allow=[Rule(**{verb: "/**"})])  # type: ignore[arg-type]  # a name each
 
     for name in ("/driver", "/driver:password"):
@@ -109,7 +109,7 @@ def test_a_rule_about_topics_shows_no_node(verb: Verb) -> None:
 
 
 def test_a_rule_for_a_type_shows_no_node() -> None:
-    """Nodes and parameters have no type that could fit."""
+    """Nodes and parameters have no type that could match."""
     policy = Policy(allow=[Rule(see="/**", type="sensor_msgs/msg/Image")])
 
     assert policy.decide(GUEST, "see", "/camera/image", "sensor_msgs/msg/Image").allowed
@@ -118,7 +118,7 @@ def test_a_rule_for_a_type_shows_no_node() -> None:
 
 @given(verb=st.sampled_from(VERBS), name=NAMES)
 def test_a_refusal_has_precedence(verb: Verb, name: str) -> None:
-    """A rule that allows much must not allow what another rule refuses."""
+    """A broad allow must not override a refusal."""
     rule = Rule(**{verb: name})  # type: ignore[arg-type]  # a name each
     policy = Policy(allow=[Rule(**dict.fromkeys(VERBS, "/**"))], refuse=[rule])  # type: ignore[arg-type]
 
@@ -136,7 +136,7 @@ def test_what_may_not_be_seen_may_not_be_used(verb: Verb, name: str) -> None:
 
 @given(verb=st.sampled_from(VERBS), name=NAMES)
 def test_a_rule_is_about_those_whom_it_names(verb: Verb, name: str) -> None:
-    """By their name, or by a group."""
+    """By name, or by a group."""
     for who in ("operator", "drivers"):
         policy = Policy(allow=[Rule(who=who, **{verb: name})])  # type: ignore[arg-type]
         assert policy.decide(OPERATOR, verb, name, "").allowed
@@ -162,7 +162,7 @@ def test_what_passes_is_within_its_limits(value: float, low: float, high: float)
 
 
 def test_fields_of_all_messages_in_an_array_are_limited() -> None:
-    """A path goes through arrays, as ``points.x`` does."""
+    """A path leads through arrays, as in ``points.x``."""
     limit = {"points.x": FieldLimit(max=1.0, outside="clamp")}
     policy = Policy(allow=[Rule(publish="/area", fields=limit)])
     area = Polygon(points=[Point32(x=0.5), Point32(x=7.0)])
@@ -193,7 +193,7 @@ def test_a_limit_of_a_field_that_is_not_there_refuses_the_message() -> None:
 
 
 def test_an_integer_is_clamped_to_an_integer_within_the_limits() -> None:
-    """Not to a limit that it cannot have."""
+    """Not to a fractional limit, which it cannot have."""
     limit = FieldLimit(0.5, 2.5, "clamp")
     policy = Policy(allow=[Rule(parameter="/n:p", fields={"value": limit})])
 
@@ -222,12 +222,12 @@ def test_an_integer_is_clamped_to_an_integer_within_the_limits() -> None:
     ],
 )
 def test_names_fit_globs(glob: str, name: str, fits: bool) -> None:
-    """A star stands for a part of a name, two stars for anything, a node for its parameters."""
+    """One star matches part of a name, two stars anything, and a node its parameters."""
     assert Policy(allow=[Rule(see=glob)]).decide(GUEST, "see", name, "").allowed == fits
 
 
 def test_a_file_says_all_of_a_policy(policy: Policy) -> None:
-    """A person reviews the file, and nothing else counts."""
+    """A person reviews the file, and nothing else has an effect."""
     twist = "geometry_msgs/msg/Twist"
     fast = Twist(linear=Vector3(x=0.6))
     turning = Twist(angular=Vector3(z=9.0))
@@ -272,18 +272,18 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
         Policy.load(tmp_path / "none.toml")
 
 
-# Who a client is
+# Identities of clients
 
 
 def test_a_token_tells_a_client_from_others(policy: Policy) -> None:
-    """From anywhere, and also beside what would fit without it."""
+    """From anywhere, even if other entries match without it."""
     for address in ("127.0.0.1", "192.168.0.7"):
         shown = credentials(token=SECRET, address=address, host="192.168.0.1:9090")
         assert policy.identify(shown).name == "operator"
 
 
 def test_a_token_may_be_in_the_file_as_its_hash() -> None:
-    """A file that many read has no secret."""
+    """A widely readable file then contains no secret."""
     digest = "2bb80d537b1da3e38bd30361aa855686bde0eacd7162fef6a25fe97bf527a25b"
     policy = Policy.parse(f"[[who]]\nname = 'x'\ntoken_sha256 = '{digest}'")
 
@@ -294,7 +294,7 @@ def test_a_token_may_be_in_the_file_as_its_hash() -> None:
 
 @given(token=st.text(min_size=1).filter(lambda text: text != "secret"))
 def test_a_wrong_token_is_refused_also_where_none_is_needed(token: str) -> None:
-    """Otherwise a mistyped token would be another client, with other rights."""
+    """Otherwise a mistyped token would make it another client, with other rights."""
     with pytest.raises(RefusedError) as refused:
         Policy.parse(EXAMPLE).identify(credentials(token=token))
     assert refused.value.code == "unauthorized"
@@ -302,7 +302,7 @@ def test_a_wrong_token_is_refused_also_where_none_is_needed(token: str) -> None:
 
 
 def test_another_machine_needs_a_secret(policy: Policy) -> None:
-    """An address, and an origin that any program may claim, say nothing."""
+    """An address, or an origin that any program may claim, proves nothing."""
     by_origin = Policy.parse("[[who]]\nname = 'page'\norigin = 'https://a.example'")
     for each, origin in ((policy, None), (by_origin, "https://a.example")):
         with pytest.raises(RefusedError):
@@ -311,7 +311,7 @@ def test_another_machine_needs_a_secret(policy: Policy) -> None:
 
 
 def test_a_certificate_tells_a_client_from_others() -> None:
-    """Its common name, which the server has verified."""
+    """By its common name, which the server has verified."""
     policy = Policy.parse("[[who]]\nname = 'laptop'\ncertificate = 'laptop-1'")
 
     assert policy.identify(credentials(certificate="laptop-1", address="10.0.0.2")).name == "laptop"
@@ -346,7 +346,7 @@ def test_a_certificate_tells_a_client_from_others() -> None:
 def test_pages_of_other_origins_may_not_connect(
     policy: Policy, shown: dict[str, object], passes: bool
 ) -> None:
-    """Nor may they under a name of their own, which their name server has rebound."""
+    """Not even under their own name that their name server has rebound."""
     if passes:
         assert policy.identify(credentials(**shown)).name == "guest"
     else:
@@ -355,7 +355,7 @@ def test_pages_of_other_origins_may_not_connect(
 
 
 def test_without_a_file_this_host_reads_and_nobody_writes() -> None:
-    """The gateway is safe before anybody has thought about it."""
+    """The gateway is safe before anybody has configured it."""
     policy = Policy.default()
     local = policy.identify(credentials())
 
@@ -375,7 +375,7 @@ def test_a_token_is_never_printed() -> None:
 
 
 def test_points_of_a_message_are_left_as_they_are() -> None:
-    """A message within its limits is passed on, and not copied."""
+    """A message within its limits is passed on without a copy."""
     policy = Policy(allow=[Rule(publish="/x", fields={"x": FieldLimit(max=1.0)})])
     message = Point(x=0.5)
 

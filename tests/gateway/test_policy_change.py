@@ -1,4 +1,4 @@
-"""A policy that is read again: all that it does not allow any more ends, whatever holds it."""
+"""A reloaded policy: everything that it no longer allows ends, whatever holds it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LESS = Policy.parse(f"{LOCAL}[[allow]]\nsee = '/**'\nsubscribe = '/numbers'")
 async def test_a_client_of_rosbridge_is_told_which_topic_ends(
     client: RosbridgeClient, robot: Robot, node: Node
 ) -> None:
-    """It is heard no more, and the others go on; the client may ask for it again, in vain."""
+    """Its messages stop, and other topics continue; subscribing again is refused."""
     words = node.create_publisher(String, "/words", 1)
     numbers = node.create_publisher(String, "/numbers", 1)
     for topic in ("/words", "/numbers"):
@@ -51,7 +51,7 @@ async def test_a_client_of_rosbridge_is_told_which_topic_ends(
 
 
 async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: Bench) -> None:
-    """Channels, subscriptions, changes of parameters, and the nodes of the connection graph."""
+    """Channels, subscriptions, parameter changes, and the nodes of the connection graph."""
     bench.node.create_publisher(String, "/words", 1)
     bench.node.create_publisher(String, "/secret", 1)
     sent: asyncio.Queue[str] = asyncio.Queue()
@@ -92,7 +92,7 @@ async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: 
 
 
 def ops(session: Session) -> list[dict[str, Any]]:
-    """Return the ops in text that wait for a client."""
+    """Return the text ops that wait for a client."""
     found = []
     while (frame := session.outbox.next_frame()) is not None:
         if isinstance(frame, str):
@@ -107,7 +107,10 @@ def ops(session: Session) -> list[dict[str, Any]]:
 async def test_an_answer_over_http_ends_with_the_right_to_its_topic(
     aionode_context: Context, accept: str, status: int, text: str
 ) -> None:
-    """A stream is complete; a request that waits for a message is answered. The caller is known."""
+    """A stream is completed; a request that waits for a message is answered.
+
+    The caller stays identified.
+    """
     path = "/topics/words?timeout_sec=60"
     async with (
         Node("robot", context=aionode_context) as robot,
@@ -129,7 +132,7 @@ async def test_an_answer_over_http_ends_with_the_right_to_its_topic(
 async def test_a_request_that_arrives_slowly_is_judged_by_the_policy_of_now(
     aionode_context: Context,
 ) -> None:
-    """Its head came with a token that is withdrawn before its body is there."""
+    """Its head arrived with a token that is withdrawn before the body arrives."""
     known = "[[who]]\nname = 'operator'\ntoken = '{}'\n[[allow]]\nparameter = '/**'\nsee = '/**'"
     async with (
         Node("gateway", context=aionode_context) as node,
@@ -155,7 +158,7 @@ async def test_a_request_that_arrives_slowly_is_judged_by_the_policy_of_now(
 
 
 async def test_a_client_that_calls_is_disconnected(bench: Bench) -> None:
-    """Also while the call waits for its server or its response."""
+    """Even while the call waits for its server or its response."""
     never = asyncio.Event()
 
     async def handle(_: Any) -> AddTwoInts.Response:
@@ -175,7 +178,7 @@ async def test_a_client_that_calls_is_disconnected(bench: Bench) -> None:
 
 
 async def test_a_client_whose_goal_waits_for_its_server_is_disconnected(bench: Bench) -> None:
-    """The server may appear, and would get a goal that the policy does not allow any more."""
+    """The server may appear, and would get a goal that the policy no longer allows."""
 
     async def pursue() -> None:
         async with session.goal("/count", {}, type_name="example_interfaces/Fibonacci"):
@@ -191,7 +194,7 @@ async def test_a_client_whose_goal_waits_for_its_server_is_disconnected(bench: B
 
 
 async def test_the_policy_of_now_counts_when_a_person_has_said_yes(bench: Bench) -> None:
-    """A person takes a while, in which the rule may be gone."""
+    """A person takes a while, during which the rule may be removed."""
     words = bench.node.create_subscription(String, "/words")
     bench.allow("[[allow]]\npublish = '/words'\nask = true")
 
@@ -208,7 +211,7 @@ async def test_the_policy_of_now_counts_when_a_person_has_said_yes(bench: Bench)
 
 
 async def test_commands_are_published_by_the_rule_of_now(bench: Bench) -> None:
-    """A lease that was open ends with its rule: the new one may say to stop much earlier."""
+    """An open lease ends with its rule: the new one may require a much earlier stop."""
     heard: list[float] = []
     bench.node.create_subscription(Twist, "/cmd_vel", lambda each: heard.append(each.linear.x))
     rule = "[[allow]]\npublish = '/cmd_vel'\nlease = {{ ttl_sec = {} }}"

@@ -1,4 +1,4 @@
-"""What a gateway refuses, drops or reads late: nothing without a number and a line in the log."""
+"""Everything that a gateway refuses, drops or reads late has a counter and a log line."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ SOURCES = {
 }
 
 ERRORS = {"AionodeError", "RefusedError", "MessageError", "ServiceError", "TimeoutError", "kinds"}
-"""What a handler catches that concerns a client."""
+"""The exceptions that concern a client, where caught."""
 
 TOLD_BY = {"note", "note_failure", "note_refusal", "fail", "_fail", "_refuse", "_note_unreadable"}
 TOLD_BY |= {"failed", "_warn", "_note_refusal"}
-"""What counts and logs it, each by way of `Refusals.note`."""
+"""The functions that count and log them, each through `Refusals.note`."""
 
 UNTOLD = {
     "foxglove/parameters.py:of": "kept for `tell`, which raises it",
@@ -66,7 +66,7 @@ UNTOLD = {
     "mcp/reading.py:transform": "the same: the answer has the problem",
     "mcp/reading.py:log": "the same as `read`",
 }
-"""Functions that catch such an error and say nothing, with the reason."""
+"""Functions that catch such an error silently, with the reason."""
 
 
 def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
@@ -81,7 +81,7 @@ def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
 async def test_each_refusal_has_a_number_and_a_line_limited_in_rate(
     bench: Bench, kind: Refusal, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The first is said at once, and the others after 10 s, 20 s and so on."""
+    """The first is logged at once, and the others after 10 s, 20 s and so on."""
     refusals, who = Refusals(bench.robot.node), Identity("page", address="192.0.2.1")
     for _ in range(60):
         refusals.note(who, "rosbridge", kind, "publish /x", "a \x1b[31m reason")
@@ -98,7 +98,7 @@ async def test_each_refusal_has_a_number_and_a_line_limited_in_rate(
 async def test_a_subject_that_was_quiet_is_said_at_once(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Who looks for a mistake tries it again and again."""
+    """A user who looks for a mistake tries repeatedly."""
     for _ in range(5):
         bench.robot.refusals.note(Identity("page"), "http", Refusal.HELD, "publish /x", "held")
         await bench.advance(30.0)
@@ -109,7 +109,7 @@ async def test_a_subject_that_was_quiet_is_said_at_once(
 async def test_one_client_hides_no_lines_about_another(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It may ask for any names."""
+    """It may request any names."""
     refusals = Refusals(bench.robot.node)
     for number in range(3 * MOST_SUBJECTS):
         refusals.note(Identity("loud"), "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
@@ -123,7 +123,7 @@ async def test_one_client_hides_no_lines_about_another(
 async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Otherwise a flood looks no larger than the few lines that it gets."""
+    """Otherwise a flood would look no larger than its few lines."""
     refusals, loud = Refusals(bench.robot.node), Identity("loud\x1b")
     for _ in range(2):
         for number in range(MOST_LINES + 7):
@@ -139,7 +139,7 @@ async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window
 async def test_refusals_without_room_for_a_line_are_in_the_number_of_its_next(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """That a line was left out does not make it one that was said."""
+    """An omitted line must not count as a written one."""
     refusals, loud = Refusals(bench.robot.node), Identity("loud")
     refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
     await bench.advance(10.0)
@@ -156,7 +156,7 @@ async def test_refusals_without_room_for_a_line_are_in_the_number_of_its_next(
 async def test_a_client_without_a_name_hides_no_lines_about_one_elsewhere(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """All who are unknown have the name ""; one host has many addresses of one IPv6 network."""
+    """All unknown clients have the name ""; one host has many addresses in an IPv6 network."""
     refusals = Refusals(bench.robot.node)
     for number in range(3 * MOST_LINES):
         loud = Identity("", address=f"2001:db8::{number:x}")
@@ -171,7 +171,7 @@ async def test_a_client_without_a_name_hides_no_lines_about_one_elsewhere(
 async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lines(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Addresses cost an attacker nothing, and each would have lines of its own."""
+    """Addresses cost an attacker nothing, and each would get its own lines."""
     refusals = Refusals(bench.robot.node)
     for number in range(2 * MOST_PLACES):
         each = Identity("", address=f"10.0.{number // 256}.{number % 256}")
@@ -184,12 +184,12 @@ async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lin
     assert sum("unknown clients: 90 more lines" in line for line in lines(caplog)) == 1
 
 
-# All ways to it
+# All callers
 
 
 @pytest.mark.parametrize("kind", Refusal)
 def test_each_kind_of_refusal_happens_somewhere(kind: Refusal) -> None:
-    """A kind that nobody notes is none."""
+    """A kind that nothing records would be dead."""
     by_code = {
         node.value
         for name, tree in SOURCES.items()
@@ -207,7 +207,7 @@ def test_each_kind_of_refusal_happens_somewhere(kind: Refusal) -> None:
 
 
 def test_each_code_of_a_refusal_is_a_kind() -> None:
-    """And has a status of HTTP."""
+    """And has an HTTP status."""
     assert {Refusal.of(RefusedError("x", "y", code)).value for code in STATUS} == set(STATUS)
     assert Refusal.of(MessageError("x", "y")) is Refusal.INVALID
     assert Refusal.of(ServiceError("x", "y")) is Refusal.FAILED
@@ -229,7 +229,7 @@ def test_nothing_that_fails_for_a_client_is_left_out_without_a_word() -> None:
 
 
 def own_nodes(function: ast.AST) -> list[ast.AST]:
-    """Return the nodes of a function, without those of functions within it."""
+    """Return the nodes of a function, without those of nested functions."""
     found: list[ast.AST] = []
     waiting = list(ast.iter_child_nodes(function))
     while waiting:
@@ -291,7 +291,7 @@ async def test_an_op_that_fails_is_in_the_log_of_the_gateway(
     said: str,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """A page of roslib that asks for no statuses hears nothing, and nor did who starts it."""
+    """A roslib page that requests no statuses is not notified, and nor was the operator."""
     bench.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
     await settle()
     async with rosbridge_client(bench.robot) as page:
@@ -321,7 +321,7 @@ async def test_a_refusal_is_one_line_whatever_the_client_calls_things(
 async def test_a_half_of_a_pair_of_characters_is_in_the_log(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It is no text, and JavaScript makes it of a name that is cut in the middle."""
+    """It is not valid text, but JavaScript produces it when it cuts a name in the middle."""
     async with rosbridge_client(bench.robot) as page:
         page.send_frame('{"op":"publish","topic":"/x","type":"std_msgs/String",'
                                '"msg":{"data":"\\ud800"}}')  # fmt: skip
@@ -334,7 +334,7 @@ async def test_a_half_of_a_pair_of_characters_is_in_the_log(
 async def test_a_gateway_that_only_reads_names_the_option(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """It is the first thing that a new user meets."""
+    """It is the first refusal that a new user meets."""
     async with serving() as gateway, raw_connect(gateway, "/", {}, []) as page:
         topic = {"topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
         await page.send(json.dumps({"op": "advertise", **topic}))
@@ -348,7 +348,7 @@ async def test_a_gateway_that_only_reads_names_the_option(
 async def test_more_clients_than_there_may_be_are_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """A page only sees that its connection has failed."""
+    """A page only sees that its connection failed."""
     policy = '[[who]]\nname = "local"\nloopback = true\n[limits]\nclients = 1'
     async with serving(Policy.parse(policy)) as gateway, raw_connect(gateway, "/", {}, []):
         await until(lambda: gateway.stats.sessions)
@@ -362,7 +362,7 @@ async def test_more_clients_than_there_may_be_are_in_the_log(
 async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Or it seems that the robot does not listen."""
+    """Otherwise the robot seems not to listen."""
     async with (
         serving(Policy.default(allow_write=True)) as gateway,
         raw_connect(gateway, "/", {}, []) as first,
@@ -381,7 +381,7 @@ async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
 async def test_messages_for_a_slow_client_are_counted_and_said(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """But not where it wants the newest only."""
+    """But not if it wants only the newest."""
     words = bench.node.create_publisher(String, "/words", 100)
     async with bench.session() as session:
         for depth in (1, 3):
@@ -400,7 +400,7 @@ async def test_messages_for_a_slow_client_are_counted_and_said(
 async def test_a_client_that_sends_too_fast_is_said_to_be_late(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """What it sends is handled later than it was sent."""
+    """Its data is processed later than it was sent."""
     policy = '[[who]]\nname = "local"\nloopback = true\n[limits]\nframes_per_sec = 20'
     async with serving(Policy.parse(policy)) as gateway, raw_connect(gateway, "/", {}, []) as page:
         for _ in range(25):

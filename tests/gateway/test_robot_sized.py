@@ -1,4 +1,4 @@
-"""Messages as large as robots have them: they pass, and what is larger is refused in the open."""
+"""Messages of the size that robots use: they pass, and larger ones are refused with a log line."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
 
 
 async def test_a_path_of_2000_poses_arrives(caplog: pytest.LogCaptureFixture) -> None:
-    """A planner has more; rosbridge takes 10 MB."""
+    """A planner has more; rosbridge accepts 10 MB."""
     got: list[Path] = []
     async with (
         serving(Policy.default(allow_write=True)) as gateway,
@@ -64,7 +64,7 @@ async def test_eight_megabytes_arrive() -> None:
 
 
 async def test_a_call_with_many_objects_is_answered() -> None:
-    """With its response, or with what does not fit."""
+    """With its response, or with the reason."""
     async with (
         serving(Policy.default(allow_write=True)) as gateway,
         raw_connect(gateway, "/", {}, []) as page,
@@ -98,7 +98,7 @@ async def test_a_frame_that_is_too_large_is_in_the_log(
     assert "frame: at most 1000 bytes are allowed by frame_bytes; the connection has ended" in line
 
 
-# Time for calls
+# Time limits of calls
 
 
 @pytest.fixture
@@ -115,7 +115,7 @@ async def slow(bench: Bench) -> Bench:
 
 
 async def answered(bench: Bench, page: RosbridgeClient, seconds: float, **fields: Any) -> bool:
-    """Call the service, and return whether the call has succeeded when some seconds are over."""
+    """Call the service, and return whether it succeeded within some seconds."""
     page.send("call_service", service="/slow", **fields)
     await bench.advance(0.01)
     for _ in range(round(seconds * 2)):
@@ -150,7 +150,7 @@ async def test_a_policy_says_how_long_calls_wait(
 
 
 def test_limits_are_given_as_text() -> None:
-    """By the option of the command, for a gateway without a policy."""
+    """By the command's option, for a gateway without a policy."""
     limits = Limits().with_given(["call_sec=60", "frame_bytes=20_000_000"])
 
     assert (limits.call_sec, limits.frame_bytes) == (60.0, 20_000_000)
@@ -159,7 +159,7 @@ def test_limits_are_given_as_text() -> None:
 
 @pytest.mark.parametrize("text", ["frame_bytes", "speed=1", "clients=many", "clients=0", "=1"])
 def test_a_limit_that_is_none_is_refused(text: str) -> None:
-    """With the limits that there are."""
+    """The error lists the limits."""
     with pytest.raises(ValueError, match=r"one of clients, frame_bytes|not a valid|above 0"):
         Limits().with_given([text])
 

@@ -1,4 +1,4 @@
-"""The services of rosapi, as clients of rosbridge call them."""
+"""The services of rosapi, as called by clients of rosbridge."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ async def test_a_question_has_its_answer(
 
 
 async def test_lists_have_what_the_robot_has(client: RosbridgeClient) -> None:
-    """Without what is hidden, and with rosapi itself, which clients look for."""
+    """Without hidden names, and with rosapi itself, which clients look for."""
     topics = (await client.call("rosapi/topics"))["values"]
     services = (await client.call("rosapi/services"))["values"]["services"]
     nodes = (await client.call("rosapi/nodes"))["values"]["nodes"]
@@ -98,7 +98,7 @@ async def test_lists_have_what_the_robot_has(client: RosbridgeClient) -> None:
 async def test_pages_ask_for_what_is_offered_without_infrastructure(
     client: RosbridgeClient,
 ) -> None:
-    """The page shows the log and parameters of nodes in panels of their own."""
+    """The page shows the log and parameters of nodes in separate panels."""
     offered = (await client.call("/rosapi/offered"))["values"]
 
     types = dict(zip(offered["topics"], offered["types"], strict=True))
@@ -111,7 +111,7 @@ async def test_pages_ask_for_what_is_offered_without_infrastructure(
 
 
 async def test_node_details_name_the_endpoints_of_a_node(client: RosbridgeClient) -> None:
-    """Of an unknown node there are none: rosapi gives no answer at all."""
+    """An unknown node has none: rosapi does not answer at all."""
     details = (await client.call("/rosapi/node_details", node="/robot_node"))["values"]
     nothing = (await client.call("/rosapi/node_details", node="/none"))["values"]
 
@@ -124,7 +124,7 @@ async def test_node_details_name_the_endpoints_of_a_node(client: RosbridgeClient
 async def test_message_details_describe_a_type_and_what_it_contains(
     client: RosbridgeClient,
 ) -> None:
-    """The type itself first; clients make forms of these."""
+    """The type itself comes first; clients create forms from these."""
     answer = await client.call("/rosapi/message_details", type="geometry_msgs/Twist")
 
     twist, vector = answer["values"]["typedefs"]
@@ -195,7 +195,7 @@ async def test_an_unknown_type_is_an_answer(client: RosbridgeClient, type_name: 
 
 
 async def test_raw_types_have_the_whole_text(client: RosbridgeClient) -> None:
-    """Foxglove reads them to decode what it gets by cbor-raw."""
+    """Foxglove reads them to decode cbor-raw."""
     values = (await client.call("/rosapi/topics_and_raw_types"))["values"]
 
     texts = dict(zip(values["topics"], values["typedefs_full_text"], strict=True))
@@ -207,7 +207,7 @@ async def test_raw_types_have_the_whole_text(client: RosbridgeClient) -> None:
 
 
 async def test_a_parameter_is_set_and_deleted(client: RosbridgeClient, node: Node) -> None:
-    """Values are JSON in a text; the reason says why not."""
+    """Values are JSON text; a refusal has a reason."""
     done = await client.call("/rosapi/set_param", name="/robot_node:speed", value="2.5")
     wrong = await client.call("/rosapi/set_param", name="/robot_node:speed", value='"fast"')
     nothing = await client.call("/rosapi/set_param", name="/robot_node:speed", value="{")
@@ -248,7 +248,7 @@ async def test_a_double_may_be_written_as_a_whole_number(
 
 
 async def test_a_parameter_that_is_not_there_has_the_default(client: RosbridgeClient) -> None:
-    """A name without a colon is a mistake, of which the client is told."""
+    """A name without a colon is an error that the client gets."""
     for name in ("/robot_node:none", "nonsense", "/none:speed"):
         answer = await client.call("/rosapi/get_param", name=name, default_value="7")
 
@@ -263,7 +263,7 @@ async def test_parameters_of_all_nodes_are_listed(client: RosbridgeClient) -> No
     assert "/robot_node:speed" in names
 
 
-# Time, policy
+# Time and policy
 
 
 async def test_the_time_is_that_of_the_node(client: RosbridgeClient, robot: Robot) -> None:
@@ -274,7 +274,7 @@ async def test_the_time_is_that_of_the_node(client: RosbridgeClient, robot: Robo
 
 
 async def test_what_the_policy_hides_is_not_in_the_answers(robot: Robot, tmp_path: Any) -> None:
-    """Neither in lists, nor when asked for by name."""
+    """Neither in lists, nor when requested by name."""
     file = tmp_path / "policy.toml"
     file.write_text('[[allow]]\nsee = "/words"\n')
     robot.policy = Policy.load(file)

@@ -1,4 +1,4 @@
-"""Services and actions by rosbridge, called and served by a client."""
+"""Services and actions over rosbridge, called and served by a client."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
 def start(work: Coroutine[Any, Any, T]) -> asyncio.Task[T]:
-    """Begin what goes on while the test does other things."""
+    """Start something that continues while the test does other things."""
     return asyncio.get_running_loop().create_task(work)
 
 
@@ -47,7 +47,7 @@ def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
 
 
 async def test_a_call_may_have_no_arguments(client: RosbridgeClient, node: Node) -> None:
-    """Null is what rosbridge calls none, where a null for a message is refused."""
+    """Null means no arguments in rosbridge, whereas a null message is refused."""
     node.create_service(AddTwoInts, "/add", add)
 
     client.send("call_service", service="/add", args=None)
@@ -60,7 +60,7 @@ async def test_a_call_may_have_no_arguments(client: RosbridgeClient, node: Node)
 async def test_a_call_is_answered(
     client: RosbridgeClient, node: Node, args: object, service: str
 ) -> None:
-    """With the id and the name that it has, also if values come in order."""
+    """With its id and name, even if values come in order."""
     node.create_service(AddTwoInts, "/add", add)
 
     client.send("call_service", service=service, args=args, id="c1", type="any/Thing")
@@ -75,7 +75,7 @@ async def test_a_call_is_answered(
 
 
 async def test_an_answer_is_in_fragments_if_the_client_asks(client: RosbridgeClient) -> None:
-    """For this call only: another one is answered whole."""
+    """For this call only: another one is answered in one piece."""
     service = "/rosapi/interfaces"
     client.send("call_service", service=service, id="c1", fragment_size=10_000)
     client.send("call_service", service=service, id="c2")
@@ -88,7 +88,7 @@ async def test_an_answer_is_in_fragments_if_the_client_asks(client: RosbridgeCli
 
 
 async def test_the_id_may_be_part_of_the_name(client: RosbridgeClient, node: Node) -> None:
-    """As the first clients of rosbridge write it."""
+    """As written by the first clients of rosbridge."""
     node.create_service(AddTwoInts, "/add", add)
 
     client.send("call_service", service="/add#7", args={})
@@ -112,7 +112,7 @@ async def test_the_id_may_be_part_of_the_name(client: RosbridgeClient, node: Nod
 async def test_a_call_that_fails_is_answered(
     client: RosbridgeClient, node: Node, fields: dict[str, Any], told: str
 ) -> None:
-    """Whatever the reason, and also for a client that has not asked for statuses."""
+    """Whatever the reason, even for a client that has not requested statuses."""
     node.create_service(AddTwoInts, "/add", add)
 
     client.send("call_service", id="c1", **fields)
@@ -123,7 +123,7 @@ async def test_a_call_that_fails_is_answered(
 
 
 async def test_a_refused_call_is_answered(robot: Robot, node: Node) -> None:
-    """With rosbridge, a client whose call no glob allows waits for ever."""
+    """In rosbridge, a client whose call no glob allows waits forever."""
     node.create_service(AddTwoInts, "/add", add)
     robot.policy = Policy.default()
     async with rosbridge_client(robot) as client:
@@ -134,7 +134,7 @@ async def test_a_refused_call_is_answered(robot: Robot, node: Node) -> None:
 
 
 async def test_calls_do_not_wait_for_each_other(client: RosbridgeClient, node: Node) -> None:
-    """A service that takes long must not hold up the others."""
+    """A service that takes long must not delay the others."""
     may_end = asyncio.Event()
 
     async def slowly(request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -155,7 +155,7 @@ async def test_calls_do_not_wait_for_each_other(client: RosbridgeClient, node: N
 
 
 async def test_a_client_serves_the_robot(client: RosbridgeClient, node: Node) -> None:
-    """Its answer is the response; the id says to which request."""
+    """Its answer is the response; the id identifies the request."""
     client.send("advertise_service", service="/sum", type=ADD)
     caller = node.create_client(AddTwoInts, "/sum")
     await caller.wait_for_service()
@@ -183,7 +183,7 @@ async def test_a_client_serves_the_robot(client: RosbridgeClient, node: Node) ->
 async def test_a_client_that_fails_to_serve_tells_the_caller(
     client: RosbridgeClient, node: Node, answer: dict[str, Any], told: str
 ) -> None:
-    """With rosbridge, the caller waits for ever, as roslibjs sends a text or nothing then."""
+    """In rosbridge, the caller waits forever if roslibjs sends a text or nothing."""
     client.send("advertise_service", service="/sum", type=ADD)
     caller = node.create_client(AddTwoInts, "/sum")
     await caller.wait_for_service()
@@ -198,7 +198,7 @@ async def test_a_client_that_fails_to_serve_tells_the_caller(
 
 @pytest.mark.parametrize("way", ["leave", "unadvertise", "again"])
 async def test_a_request_to_a_client_that_goes_fails(robot: Robot, node: Node, way: str) -> None:
-    """With rosbridge, it gets an empty response, as if all were well."""
+    """In rosbridge, it gets an empty response, as if all were well."""
     caller = node.create_client(AddTwoInts, "/sum")
     async with rosbridge_client(robot) as client:
         client.send("advertise_service", service="/sum", type=ADD)
@@ -219,7 +219,7 @@ async def test_a_request_to_a_client_that_goes_fails(robot: Robot, node: Node, w
 async def test_a_client_finds_the_service_that_it_has_just_advertised(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """Its ops about one name are done in order, also if it advertised the name before."""
+    """Its ops about one name are executed in order, even if it advertised the name before."""
     for number in range(3):
         client.send("advertise_service", service="/sum", type=ADD)
         client.send("call_service", service="/sum", args=[number, 2], id=f"c{number}")
@@ -283,7 +283,7 @@ def goal_of(order: int) -> dict[str, Any]:
 async def test_a_goal_is_answered_with_feedback_and_result(
     client: RosbridgeClient, node: Node, order: int, status: int
 ) -> None:
-    """An aborted goal has a result, too, and its status says what it is."""
+    """An aborted goal has a result, too, and its status says so."""
     ActionServer(node, Fibonacci, "/fibonacci", count, cancel_callback=accept)
     await settle()
 
@@ -297,7 +297,7 @@ async def test_a_goal_is_answered_with_feedback_and_result(
 
 
 async def test_a_goal_is_canceled_by_its_id(client: RosbridgeClient, node: Node) -> None:
-    """Its result says so with the status 5."""
+    """Its result has the status 5."""
     ActionServer(node, Fibonacci, "/fibonacci", count, cancel_callback=accept)
     await settle()
     client.send("send_action_goal", **goal_of(99))
@@ -310,7 +310,7 @@ async def test_a_goal_is_canceled_by_its_id(client: RosbridgeClient, node: Node)
 
 
 async def test_the_goals_of_a_client_end_with_it(robot: Robot, node: Node) -> None:
-    """Motion ends with whoever asked for it; with rosbridge it goes on."""
+    """Motion ends when its client has gone; in rosbridge it continues."""
     seen: list[ServerGoalHandle[Any, Any, Any]] = []
 
     async def watched(goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
@@ -328,7 +328,7 @@ async def test_the_goals_of_a_client_end_with_it(robot: Robot, node: Node) -> No
 
 
 async def test_a_goal_that_fails_is_answered(client: RosbridgeClient, node: Node) -> None:
-    """No server, a goal that is rejected, a wrong type, an id in use: each has its text."""
+    """No server, a rejected goal, a wrong type, an id in use: each has its text."""
     for fields, told in (
         ({"action": "/none", "action_type": FIBONACCI}, "no action server"),
         ({"action": "/none"}, "/none"),
@@ -343,7 +343,7 @@ async def test_a_goal_that_fails_is_answered(client: RosbridgeClient, node: Node
 async def test_a_goal_can_be_canceled_before_it_is_accepted(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """Then it is withdrawn, and its client is told that no result comes."""
+    """Then it is withdrawn, and its client learns that no result will come."""
     is_asked, may_decide = asyncio.Event(), asyncio.Event()
     executed: list[object] = []
 
@@ -379,7 +379,7 @@ async def test_a_rejected_goal_is_answered(client: RosbridgeClient, node: Node) 
 
 
 async def test_goals_of_one_client_have_their_own_ids(client: RosbridgeClient, node: Node) -> None:
-    """One is canceled, and the other, and everything else, goes on; an id in use is refused."""
+    """One is canceled, and everything else continues; an id in use is refused."""
     ActionServer(node, Fibonacci, "/fibonacci", count, cancel_callback=accept)
     await settle()
     for order, message_id in ((99, "long"), (99, "long"), (3, "short")):
@@ -434,7 +434,7 @@ async def test_a_client_executes_goals(client: RosbridgeClient, node: Node) -> N
 async def test_a_goal_that_the_client_does_not_reach_is_aborted(
     client: RosbridgeClient, node: Node, answer: dict[str, Any], status: GoalStatus
 ) -> None:
-    """Also when the client answers with what is no result, or with nothing, as roslibjs does."""
+    """Also if the client's answer is not a result, or empty, as from roslibjs."""
     client.send("advertise_action", action="/count", type=FIBONACCI)
     caller, goal = served(node)
     await caller.wait_for_server()
@@ -447,7 +447,7 @@ async def test_a_goal_that_the_client_does_not_reach_is_aborted(
 
 
 async def test_the_client_is_told_of_a_canceled_goal(client: RosbridgeClient, node: Node) -> None:
-    """Its result then is that of the canceled goal."""
+    """Its result is then that of the canceled goal."""
     client.send("advertise_action", action="/count", type=FIBONACCI)
     caller, goal = served(node)
     await caller.wait_for_server()

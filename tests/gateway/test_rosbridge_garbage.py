@@ -1,4 +1,4 @@
-"""A client of rosbridge harms nobody but itself by garbage."""
+"""A rosbridge client that sends garbage harms only itself."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ JUNK: tuple[Any, ...] = (
 
 
 def op_of_chance(chance: random.Random) -> str:
-    """Return an op with fields that may or may not make sense."""
+    """Return a random op with fields that may or may not make sense."""
     op: dict[str, Any] = {
         "op": chance.choice(OPS.split()),
         "topic": "/t",
@@ -71,7 +71,7 @@ def op_of_chance(chance: random.Random) -> str:
 
 @pytest.mark.parametrize("seed", range(4))
 async def test_ops_of_chance_harm_nobody(robot: Robot, client: RosbridgeClient, seed: int) -> None:
-    """Not even the one who sends them: all that fails is answered."""
+    """Not even its sender: every failure is answered."""
     chance = random.Random(seed)  # noqa: S311  # no secret
     async with rosbridge_client(robot) as wild:
         wild.send("set_level", level="info")

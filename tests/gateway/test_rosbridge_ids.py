@@ -1,4 +1,4 @@
-"""Ids of clients of rosbridge: whatever JSON they are, they are told back as they came."""
+"""Ids of rosbridge clients: any JSON value, repeated unchanged."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ async def server(node: Node) -> Node:
 async def test_an_answer_has_the_id_of_its_call(
     server: Node, client: RosbridgeClient, given: Any
 ) -> None:
-    """JavaScript counts its calls by numbers, and waits for the answer of each."""
+    """JavaScript numbers its calls, and waits for the answer to each."""
     client.send("call_service", service="/ask", id=given)
     answer = await client.receive()
 
@@ -50,7 +50,7 @@ async def test_an_answer_has_the_id_of_its_call(
 async def test_feedback_and_result_have_the_id_of_their_goal(
     server: Node, client: RosbridgeClient, given: Any
 ) -> None:
-    """Or nobody can tell to which goal they belong."""
+    """Otherwise nobody could tell to which goal they belong."""
     fields = {"action": "/count", "action_type": "example_interfaces/Fibonacci", "feedback": True}
     client.send("send_action_goal", id=given, **fields)
     answers = [await client.receive() for _ in range(2)]
@@ -67,7 +67,7 @@ async def test_feedback_and_result_have_the_id_of_their_goal(
 async def test_a_number_and_its_text_are_two_ids(
     node: Node, client: RosbridgeClient, given: object
 ) -> None:
-    """As they are in JSON: what one of them began, the other does not end."""
+    """As in JSON: one does not end what the other began."""
     topic = {"topic": "/words", "type": "std_msgs/String"}
     other = "7" if given == 7 else 7
     client.send("subscribe", id=given, **topic)
@@ -100,7 +100,7 @@ LOST: list[dict[str, object]] = [
 
 @pytest.mark.parametrize("op", LOST, ids=lambda op: json.dumps(op)[:70])
 async def test_every_call_and_goal_is_answered(robot: Robot, op: dict[str, object]) -> None:
-    """Also one that is none: its client waits, and has asked for no statuses."""
+    """Even an invalid one: its client waits, and has not requested statuses."""
     async with rosbridge_client(robot) as page:
         page.send_frame(json.dumps(op))
         answer = await page.receive()

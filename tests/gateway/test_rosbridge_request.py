@@ -23,20 +23,20 @@ from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
     ["", "[]", "7", "{", "{}", '{"op": 3}', b"\xff\xfe", "[" * 100_000, '{"op":"a"}{"op":"b"}'],
 )
 def test_a_frame_that_is_no_op_is_an_error(frame: str | bytes) -> None:
-    """One frame is one op: rosbridge searches for brackets instead, at a quadratic cost."""
+    """One frame is one op; rosbridge searches for brackets instead, at quadratic cost."""
     with pytest.raises(MessageError, match="frame"):
         op_of(frame, 5000)
 
 
 @given(st.one_of(st.text(), st.binary()))
 def test_garbage_raises_nothing_but_a_message_error(frame: str | bytes) -> None:
-    """Whatever comes, the client is told, and nothing else happens."""
+    """Whatever arrives, the client gets an error, and nothing else happens."""
     with suppress(MessageError):
         op_of(frame, 5000)
 
 
 def test_infinities_are_read_as_python_writes_them() -> None:
-    """A client that uses Python's json module sends them so."""
+    """A client that uses Python's json module sends them this way."""
     op = op_of(json.dumps({"op": "publish", "msg": [math.inf, math.nan]}), 5000)
 
     assert op["msg"][0] == math.inf
@@ -45,31 +45,31 @@ def test_infinities_are_read_as_python_writes_them() -> None:
 
 @pytest.mark.parametrize("value", ["5", True, [1], {}])
 def test_a_number_is_a_number(value: object) -> None:
-    """A text is none: rosbridge checks so, too."""
+    """A text is not; rosbridge checks this, too."""
     with pytest.raises(MessageError, match=r"subscribe\.throttle_rate"):
         number({"op": "subscribe", "throttle_rate": value}, "throttle_rate")
 
 
 def test_a_number_that_makes_no_sense_is_the_default() -> None:
-    """As for rosbridge, which takes no negative rates."""
+    """As in rosbridge, which accepts no negative rates."""
     for value in (-1, math.nan, None):
         assert number({"op": "subscribe", "throttle_rate": value}, "throttle_rate") == 0
 
 
 def test_types_are_understood_without_their_kind() -> None:
-    """Clients of ROS 1 and ROS 2 write both."""
+    """Clients of ROS 1 and ROS 2 write both forms."""
     assert type_text("std_msgs/String", "msg") == "std_msgs/msg/String"
     assert type_text("std_msgs/msg/String", "msg") == "std_msgs/msg/String"
     assert type_text("", "msg") == ""
 
 
 def asked(**policies: object) -> QoSProfile | None:
-    """Return the profile that an op asks for."""
+    """Return the profile requested by an op."""
     return profile({"op": "subscribe", "qos": policies}, QoSProfile(depth=10))
 
 
 def test_a_profile_may_be_asked_for() -> None:
-    """As with rosbridge 4.2: words in any case, seconds, secs and nsecs, or 'infinite'."""
+    """As in rosbridge 4.2: words in any case, seconds, secs and nsecs, or 'infinite'."""
     found = asked(
         reliability="BEST_EFFORT",
         durability="transient_local",
@@ -100,7 +100,7 @@ def test_a_profile_may_be_asked_for() -> None:
     ],
 )
 def test_an_unknown_policy_or_value_is_an_error_that_names_it(name: str, value: object) -> None:
-    """The client is told what fits."""
+    """The client learns what is allowed."""
     with pytest.raises(MessageError, match=f"subscribe.qos.{name}"):
         asked(**{name: value})
 
@@ -122,7 +122,7 @@ def test_fragments_make_a_message_in_any_order() -> None:
 
 
 def test_incomplete_fragments_do_not_grow_without_limit() -> None:
-    """With rosbridge, they are an attack on the memory of the robot."""
+    """In rosbridge, they are an attack on the robot's memory."""
     store = FragmentStore(1000)
 
     for num in range(45):
@@ -136,6 +136,6 @@ def test_incomplete_fragments_do_not_grow_without_limit() -> None:
     ("num", "total"), [(0, 0), (2, 2), (-1, 2), (0, 10**9), ("0", 1), (0, None), (True, 2)]
 )
 def test_a_fragment_of_nothing_is_an_error(num: object, total: object) -> None:
-    """Numbers begin with 0 and end before the total."""
+    """Numbers start at 0 and end before the total."""
     with pytest.raises(MessageError, match="fragment"):
         FragmentStore(1000).add(part("a", num, total))

@@ -1,4 +1,4 @@
-"""Topics by rosbridge: a client in the process of the gateway, in a context without network."""
+"""Topics over rosbridge: a client in the gateway's process, in a context without network."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ async def test_a_subscriber_gets_messages_as_json(client: RosbridgeClient, node:
 
 
 async def test_the_type_of_a_topic_need_not_be_given(client: RosbridgeClient, node: Node) -> None:
-    """The graph knows it; of an unknown topic the client is told, which rosbridge does not do."""
+    """The graph knows it; an unknown topic is an error, which rosbridge does not report."""
     publisher = node.create_publisher(String, "/words", 10)
     client.send("subscribe", topic="/words")
     await settle()
@@ -55,7 +55,7 @@ async def test_the_type_of_a_topic_need_not_be_given(client: RosbridgeClient, no
 async def test_the_feedback_of_an_action_is_a_topic(
     client: RosbridgeClient, node: Node, given: dict[str, str]
 ) -> None:
-    """A page that watches shows goals that others have sent; the type belongs to the action."""
+    """A page shows goals that others have sent; the type belongs to the action."""
     message = Fibonacci.Impl.FeedbackMessage
     publisher = node.create_publisher(message, "/fibonacci/_action/feedback", 10)
     client.send("subscribe", topic="/fibonacci/_action/feedback", **given)
@@ -77,7 +77,7 @@ async def test_a_service_is_no_topic_though_it_belongs_to_an_action(
 
 
 async def test_each_compression_has_its_form(robot: Robot, node: Node) -> None:
-    """Clients of one topic may ask for different ones: the first does not decide for all."""
+    """Clients of one topic may request different ones: the first does not decide for all."""
     publisher = node.create_publisher(Image, "/image", 10)
     image = Image(data=b"\x01\x02", width=2)
     got = {}
@@ -95,7 +95,7 @@ async def test_each_compression_has_its_form(robot: Robot, node: Node) -> None:
 
 
 async def test_ids_of_one_client_share_a_subscription(client: RosbridgeClient, node: Node) -> None:
-    """A client gets each message once, as long as one of its ids is subscribed."""
+    """A client gets each message once while one of its ids is subscribed."""
     publisher = node.create_publisher(Int32, "/count", 10)
     client.send("subscribe", topic="/count", id="a")
     client.send("subscribe", topic="/count", id="b")
@@ -115,7 +115,7 @@ async def test_ids_of_one_client_share_a_subscription(client: RosbridgeClient, n
 async def test_the_strongest_compression_of_a_client_counts(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """As with rosbridge: a page has one decoder for each topic."""
+    """As in rosbridge: a page has one decoder for each topic."""
     publisher = node.create_publisher(Int32, "/count", 10)
     client.send("subscribe", topic="/count", id="a", compression="cbor")
     client.send("subscribe", topic="/count", id="b")
@@ -132,7 +132,7 @@ async def test_the_strongest_compression_of_a_client_counts(
 async def test_a_late_subscription_gets_what_is_latched(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """Also the second one of a client, and whenever the publisher came: maps, descriptions."""
+    """Including a client's second one, whenever the publisher appeared: maps, descriptions."""
     client.send("subscribe", topic="/map", type="std_msgs/String", id="early")
     await settle()
     profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -145,7 +145,7 @@ async def test_a_late_subscription_gets_what_is_latched(
 
 
 async def test_the_queue_of_a_client_keeps_the_newest(client: RosbridgeClient, node: Node) -> None:
-    """A slow client gets what is true now, after a delay that does not grow."""
+    """A slow client gets the current state, with a delay that does not grow."""
     publisher = node.create_publisher(Int32, "/count", 100)
     client.send("subscribe", topic="/count", queue_length=2)
     await settle()
@@ -204,7 +204,7 @@ async def test_a_message_is_in_fragments_only_if_the_client_asks(
 
 
 async def test_a_message_is_encoded_once_for_all_clients(robot: Robot, node: Node) -> None:
-    """Each kind of frame is made by the first client that needs it."""
+    """The first client that needs a kind of frame creates it."""
     publisher = node.create_publisher(String, "/words", 10)
     async with rosbridge_client(robot) as first, rosbridge_client(robot) as second:
         for client in (first, second):
@@ -219,7 +219,7 @@ async def test_a_message_is_encoded_once_for_all_clients(robot: Robot, node: Nod
 
 
 async def test_a_message_of_a_client_reaches_the_robot(client: RosbridgeClient, node: Node) -> None:
-    """Advertised or not: then the type is that of the message, or of the topic."""
+    """If it was not advertised, the type is that of the message, or of the topic."""
     reader = node.create_subscription(Vector3, "/cmd", qos_profile=10)
     client.send("advertise", topic="/cmd", type="geometry_msgs/Vector3", queue_size=9, latch=False)
     client.send("publish", topic="/cmd", msg={"x": 1}, latch=False)
@@ -232,7 +232,7 @@ async def test_a_message_of_a_client_reaches_the_robot(client: RosbridgeClient, 
 async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """And a latched message reaches also those that come later."""
+    """A latched message also reaches later ones."""
     client.send("advertise", topic="/a", type="std_msgs/String", latch=True, id="a")
     client.send("publish", topic="/a", msg={"data": "1"})
     await settle()
@@ -263,7 +263,7 @@ async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
 async def test_a_mistake_is_told(
     client: RosbridgeClient, fields: dict[str, object], told: str
 ) -> None:
-    """Rosbridge writes it into its own log only, where the author of a page never looks."""
+    """Rosbridge only writes it to its own log, where the author of a page never looks."""
     client.send("publish", id="p1", **fields)
 
     status = await client.receive()
@@ -273,7 +273,7 @@ async def test_a_mistake_is_told(
 
 
 async def test_no_status_is_sent_to_those_who_have_not_asked(robot: Robot) -> None:
-    """Many clients do not know the op; a call after the mistake is the next that they get."""
+    """Many clients do not know the op; they next get the answer to the call after the mistake."""
     async with rosbridge_client(robot) as client:
         client.send("publish", topic="/t", msg={})
         client.send("nonsense")
@@ -283,7 +283,7 @@ async def test_no_status_is_sent_to_those_who_have_not_asked(robot: Robot) -> No
 
 
 async def test_a_client_that_sends_no_ops_is_disconnected(robot: Robot) -> None:
-    """After a hundred frames of garbage; rosbridge searches each for brackets, for ever."""
+    """After a hundred frames of garbage; rosbridge searches each for brackets, forever."""
     async with rosbridge_client(robot) as client:
         for _ in range(150):
             client.send_frame("}")
@@ -295,7 +295,7 @@ async def test_a_client_that_sends_no_ops_is_disconnected(robot: Robot) -> None:
 
 @pytest.mark.parametrize("op", [{"op": "nonsense"}, {"op": "publish"}, {"op": "subscribe"}])
 async def test_ops_that_come_to_nothing_are_counted(robot: Robot, op: dict[str, str]) -> None:
-    """The gateway reads a client more slowly that sends many of them."""
+    """The gateway reads more slowly from a client that sends many of them."""
     async with rosbridge_client(robot) as client:
         for _ in range(3):
             client.send(**op)
@@ -305,14 +305,14 @@ async def test_ops_that_come_to_nothing_are_counted(robot: Robot, op: dict[str, 
 
 
 async def test_a_frame_may_be_bytes_of_json(client: RosbridgeClient) -> None:
-    """Some clients send text so, and rosbridge takes it."""
+    """Some clients send text this way, and rosbridge accepts it."""
     client.send_frame(b'{"op": "call_service", "service": "rosapi/get_ros_version"}')
 
     assert (await client.receive())["values"]["version"] == 2
 
 
 async def test_fragments_of_a_client_are_put_together(client: RosbridgeClient) -> None:
-    """For each client apart: with rosbridge, two clients with one id mix their messages."""
+    """Separately for each client: in rosbridge, two clients with one id mix their messages."""
     whole = json.dumps({"op": "call_service", "service": "/rosapi/get_ros_version", "id": "c"})
     for num, data in enumerate((whole[:20], whole[20:])):
         client.send("fragment", id="1", data=data, num=num, total=2)
@@ -351,7 +351,7 @@ async def test_one_op_that_waits_does_not_hold_up_another(
 async def test_a_burst_of_messages_is_published_whole_and_in_order(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """A frame is not refused because its predecessors had no turn yet."""
+    """A frame is not refused because earlier ones have not been processed yet."""
     reader = node.create_subscription(Int32, "/count", qos_profile=1000)
     client.send("advertise", topic="/count", type="std_msgs/Int32")
     for number in range(500):
@@ -365,7 +365,7 @@ async def test_a_burst_of_messages_is_published_whole_and_in_order(
 async def test_a_page_may_subscribe_to_very_many_topics_at_once(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """When it is loaded, all its ops come in one burst, which is no attack."""
+    """When it is loaded, all its ops arrive in one burst, which is no attack."""
     for number in range(60):
         for op in ("advertise", "subscribe"):
             client.send(op, topic=f"/t{number}", type="std_msgs/String")
@@ -378,7 +378,7 @@ async def test_a_page_may_subscribe_to_very_many_topics_at_once(
 
 @pytest.mark.parametrize("op", ["advertise", "subscribe"])
 async def test_the_ids_of_one_topic_are_bounded(client: RosbridgeClient, op: str) -> None:
-    """A client could have the gateway keep, and combine, any number of them."""
+    """Otherwise a client could make the gateway keep, and combine, any number of them."""
     for number in range(65):
         client.send(op, topic="/a", type="std_msgs/String", id=str(number))
 
@@ -392,7 +392,7 @@ async def test_the_ids_of_one_topic_are_bounded(client: RosbridgeClient, op: str
 async def test_a_publisher_of_another_type_is_refused(
     client: RosbridgeClient, node: Node, op: str
 ) -> None:
-    """No subscription would hear it, and its author would look for the reason in vain."""
+    """No subscription would receive it, and its author would look for the reason in vain."""
     node.create_subscription(Int32, "/count", print)
     client.send(op, topic="/count", type="std_msgs/String", id="a", msg={})
 
@@ -404,7 +404,7 @@ async def test_a_publisher_of_another_type_is_refused(
 async def test_a_command_is_as_old_as_its_frame(
     client: RosbridgeClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also if it then waits for an earlier op, and whatever the client says of it."""
+    """Even if it then waits for an earlier op, and whatever the client claims."""
     seen: list[int] = []
 
     async def publish(*_: object, arrived_ns: int) -> None:

@@ -46,12 +46,12 @@ NOW_NS = 12 * 10**9 + 34
 
 
 def in_json(message: Any) -> Any:
-    """Return a message as a client decodes it."""
+    """Return a message as decoded by a client."""
     return json.loads(json_of(snapshot(message)))
 
 
 def in_cbor(message: Any) -> Any:
-    """Return a message as a client decodes it."""
+    """Return a message as decoded by a client."""
     return cbor2.loads(cbor_frame("/t", snapshot(message)))["msg"]
 
 
@@ -59,7 +59,7 @@ def in_cbor(message: Any) -> Any:
 
 
 def test_json_has_null_for_what_json_has_not() -> None:
-    """NaN and the infinities are no JSON: browsers would refuse the whole frame."""
+    """NaN and infinities are not JSON: browsers would refuse the whole frame."""
     scan = LaserScan(ranges=[1.5, math.inf, math.nan], angle_min=-math.inf)
 
     assert in_json(scan)["ranges"] == [1.5, None, None]
@@ -67,7 +67,7 @@ def test_json_has_null_for_what_json_has_not() -> None:
 
 
 def test_json_has_bytes_as_base64_text() -> None:
-    """So do clients read them, whether the field has a fixed size or not."""
+    """Clients read them this way, whether the field has a fixed size or not."""
     assert in_json(Image(data=b"\x00\xff"))["data"] == base64.b64encode(b"\x00\xff").decode()
     uuid = np.arange(16, dtype=np.uint8)
     assert in_json(UUID(uuid=uuid))["uuid"] == base64.b64encode(uuid.tobytes()).decode()
@@ -81,7 +81,7 @@ def test_json_has_numbers_for_values_of_type_byte() -> None:
 
 
 def test_json_of_a_decoded_message_is_that_of_the_message() -> None:
-    """What came over the wire has other Python types, such as views of the received bytes."""
+    """Messages from the wire have other Python types, such as views of the received bytes."""
     message = Image(data=b"\x01\x02", height=3, header=Header(frame_id="ü"))
 
     assert json.loads(json_of(cdr.decode(Image, cdr.encode(message)))) == in_json(message)
@@ -91,7 +91,7 @@ def test_json_of_a_decoded_message_is_that_of_the_message() -> None:
 
 
 def test_cbor_has_sequences_of_numbers_as_typed_arrays() -> None:
-    """Clients map them to arrays without a conversion: RFC 8746, little endian."""
+    """Clients map them to arrays without conversion: RFC 8746, little endian."""
     scan = in_cbor(LaserScan(ranges=[1.5, math.inf]))
 
     assert scan["ranges"].tag == 85
@@ -101,7 +101,7 @@ def test_cbor_has_sequences_of_numbers_as_typed_arrays() -> None:
 
 
 def test_cbor_has_bytes_as_bytes_and_arrays_of_a_fixed_size_as_lists() -> None:
-    """So rosbridge does, and clients expect it."""
+    """As in rosbridge, and as clients expect."""
     assert in_cbor(UInt8MultiArray(data=b"\x01\x02"))["data"] == b"\x01\x02"
     assert in_cbor(CameraInfo())["k"] == [0.0] * 9
     assert in_cbor(Arrays(bool_values=[True, False, True]))["bool_values"] == [True, False, True]
@@ -115,7 +115,7 @@ def test_cbor_keeps_nan() -> None:
 
 @given(st.binary(max_size=70_000), st.integers(0, 2**62))
 def test_cbor_raw_has_the_bytes_of_the_message_unchanged(data: bytes, time_ns: int) -> None:
-    """The frame is put together around them; any decoder reads it."""
+    """The frame is built around them; any decoder can read it."""
     frame = cbor2.loads(bytes(cbor_raw_frame("/t", memoryview(data), time_ns)))
 
     secs, nsecs = divmod(time_ns, 10**9)
@@ -140,13 +140,13 @@ def test_png_is_a_picture_whose_pixels_are_the_frame(text: str) -> None:
 
 
 def test_fragments_are_not_made_without_number() -> None:
-    """A client may ask for parts of one character, of an image of millions."""
+    """A client may request fragments of one character of an image of millions."""
     assert len(list(fragments("x" * 5_000_000, 1, "7"))) == 1000
 
 
 @given(st.text(min_size=1, max_size=100), st.integers(1, 120))
 def test_fragments_together_are_the_frame(text: str, size: int) -> None:
-    """A frame that fits is not touched."""
+    """A frame that fits is unchanged."""
     parts = list(fragments(text, size, "7"))
 
     if len(text) <= size:
@@ -180,14 +180,14 @@ def test_text_that_is_not_base64_is_an_error_that_names_the_field() -> None:
     "stamp", ["now", {"sec": 12, "nanosec": 34}, {"secs": 12, "nsecs": 34}, [12, 34]]
 )
 def test_a_time_has_all_forms_that_clients_send(stamp: object) -> None:
-    """The words of ROS 1, of ROS 2, and ``now``."""
+    """The names of ROS 1 and ROS 2, and ``now``."""
     sent = {"header": {"stamp": stamp}}
 
     assert from_json(PointStamped, sent, NOW_NS).header.stamp == Time(sec=12, nanosec=34)
 
 
 def test_a_header_without_a_stamp_is_stamped() -> None:
-    """Clients without a clock in step with the robot's leave that to rosbridge."""
+    """Clients whose clock differs from the robot's leave that to rosbridge."""
     sent = {"header": {"frame_id": "map"}}
 
     header = from_json(PointStamped, sent, NOW_NS).header
@@ -220,7 +220,7 @@ def test_a_header_that_is_the_message_is_stamped() -> None:
 
 
 def test_null_is_no_number() -> None:
-    """JavaScript writes it for NaN, and the wheels would hear NaN; rosbridge refuses it, too."""
+    """JavaScript writes it for NaN, which would reach the wheels; rosbridge refuses it, too."""
     with pytest.raises(MessageError, match=r"data: None .*needs a float"):
         from_json(Float64, {"data": None}, NOW_NS)
     with pytest.raises(MessageError, match=r"ranges\[1\]: None"):
@@ -228,7 +228,7 @@ def test_null_is_no_number() -> None:
 
 
 def test_values_may_come_in_the_order_of_the_fields() -> None:
-    """Requests of services are often lists."""
+    """Service requests are often lists."""
     sent = [[1.0, 0, 0], {"z": 2}]
 
     twist = from_json(Twist, sent, NOW_NS)
@@ -245,13 +245,13 @@ def test_an_unknown_field_is_an_error() -> None:
 
 @pytest.mark.parametrize("values", [None, "text", 3, [[None]], {"data": {"data": 1}}])
 def test_what_is_no_message_is_an_error(values: object) -> None:
-    """No value of JSON may raise anything else: it comes from anybody."""
+    """No JSON value may raise anything else: anybody may send it."""
     with pytest.raises(MessageError):
         from_json(Bool, values, NOW_NS)
 
 
 def test_a_message_survives_the_way_to_a_client_and_back() -> None:
-    """What a browser receives it may publish."""
+    """A browser may publish what it receives."""
     image = Image(data=b"\x00\x01", width=2, header=Header(stamp=Time(sec=3), frame_id="camera"))
 
     values = json.loads(json_frame("/image", snapshot(image)))["msg"]

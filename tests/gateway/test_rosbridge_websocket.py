@@ -1,4 +1,4 @@
-"""Clients of rosbridge over real WebSockets: those that are slow, large, many, or gone."""
+"""Rosbridge clients over real WebSockets: slow ones, large frames, many clients, and lost ones."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Connect = Callable[..., contextlib.AbstractAsyncContextManager[websockets.Client
 
 @pytest.fixture
 async def connect(node_factory: Callable[..., Node]) -> AsyncIterator[Connect]:
-    """Yield what connects to a gateway where everything is allowed."""
+    """Yield a function that connects to a gateway that allows everything."""
     gateway_node = node_factory("gateway")
     await settle()
     async with Gateway(gateway_node, Policy.default(allow_write=True), port=0) as gateway:
@@ -66,7 +66,7 @@ async def test_a_large_message_arrives_by_cbor_in_one_frame(connect: Connect, no
 
 
 async def test_a_client_that_reads_nothing_slows_no_other(connect: Connect, node: Node) -> None:
-    """The others get every message, and what waits for it is bounded: it gets the newest later."""
+    """The others get every message; a bounded number waits for it, and it gets the newest later."""
     publisher = node.create_publisher(String, "/words", 100)
     async with connect() as slow, connect() as fast:
         for client in (slow, fast):
@@ -88,7 +88,7 @@ async def test_a_client_that_reads_nothing_slows_no_other(connect: Connect, node
 async def test_all_publishers_of_a_topic_are_heard(
     connect: Connect, node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Reliable or not, latched or not, before the subscription or after it, without a warning."""
+    """Reliable or not, latched or not, before or after the subscription, without a warning."""
     best_effort = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     async with connect() as client:
@@ -107,7 +107,7 @@ async def test_all_publishers_of_a_topic_are_heard(
 
 
 async def test_clients_come_and_go_while_messages_flow(connect: Connect, node: Node) -> None:
-    """With or without a goodbye, whatever they hold: no node fails, and nothing stays."""
+    """With or without a goodbye, whatever they hold: no node fails, and nothing is left behind."""
     publisher = node.create_publisher(Int32, "/count", 10)
 
     async def visit(number: int) -> None:
@@ -133,7 +133,7 @@ async def test_clients_come_and_go_while_messages_flow(connect: Connect, node: N
 
 
 async def test_a_client_that_sends_garbage_is_disconnected(connect: Connect) -> None:
-    """The others are not: a browser does not send it by mistake a hundred times."""
+    """Other clients are not: a browser does not send garbage a hundred times by mistake."""
     async with connect() as good, connect() as bad:
         with contextlib.suppress(websockets.ConnectionClosed):
             for _ in range(1000):
@@ -150,7 +150,7 @@ async def test_no_token_reaches_a_log(
     tmp_path: Path,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Not even one that is wrong, and not at the lowest level: logs are kept, and shown around."""
+    """Not even a wrong one, at the lowest level: logs are kept, and shown to others."""
     policy = tmp_path / "policy.toml"
     known = hashlib.sha256(b"hush").hexdigest()
     policy.write_text(f'[[who]]\nname = "me"\ntoken_sha256 = "{known}"\n')
@@ -172,7 +172,7 @@ async def test_no_token_reaches_a_log(
 
 
 async def test_topics_tell_how_many_clients_there_are_and_who(connect: Connect, node: Node) -> None:
-    """Dashboards of rosbridge read them, also those that come later."""
+    """Dashboards of rosbridge read them, including dashboards that connect later."""
     counts: list[int] = []
     addresses: list[list[str]] = []
     await settle()

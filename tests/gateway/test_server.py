@@ -56,7 +56,7 @@ DRIVE = drive(1.0)
 
 
 async def test_small_frames_wait_for_no_acknowledgement() -> None:
-    """A client acknowledges after 40 ms; so long would each answer take that has two parts."""
+    """A client acknowledges after 40 ms, which each answer in two parts would take."""
     async with serving() as gateway, connect(address(gateway), proxy=None):
         session = session_of(gateway)
         connection: Any = session.arrivals.connection
@@ -76,7 +76,7 @@ STRANGERS = (
 
 
 async def test_strangers_are_refused_on_every_way_in() -> None:
-    """Pages of other origins, names that are bound anew, wrong tokens."""
+    """Pages of other origins, rebound names, wrong tokens."""
     async with serving(Policy.parse(POLICY)) as gateway:
         for headers in STRANGERS:
             public = [] if "authorization" in headers else ["/"]  # the page itself
@@ -93,7 +93,7 @@ async def test_strangers_are_refused_on_every_way_in() -> None:
 
 
 async def test_refused_clients_are_one_warning_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
-    """It names the origin, which a browser does not tell its page; and nobody can fill the log."""
+    """It names the origin, which a browser hides from its page; and nobody can fill the log."""
     caplog.set_level(logging.WARNING)
     async with serving() as gateway:
         for _ in range(3):
@@ -107,7 +107,7 @@ async def test_refused_clients_are_one_warning_in_the_log(caplog: pytest.LogCapt
 
 
 async def test_a_page_of_an_allowed_origin_may_read_the_answers() -> None:
-    """A browser asks first what such a page may do."""
+    """A browser first asks what such a page may do."""
     origin = "https://dash.example"
     policy = Policy.parse(f"origins = ['{origin}']\n{POLICY}")
     async with serving(policy) as gateway, http_client() as client:
@@ -125,7 +125,7 @@ async def test_a_page_of_an_allowed_origin_may_read_the_answers() -> None:
 async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
     caplog: pytest.LogCaptureFixture, tmp_path: Path
 ) -> None:
-    """Header, subprotocol and address; the last one is what servers write into logs."""
+    """Header, subprotocol and address; servers write the last one into logs."""
     caplog.set_level(logging.DEBUG)
     caplog.set_level(logging.INFO, "websockets.client")  # the test's own side
     caplog.set_level(logging.INFO, "httpx")
@@ -147,13 +147,13 @@ async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
     logging.getLogger("httpx").disabled = False
     lines = [json.loads(line) for line in log.read_text().splitlines()]
     assert {line["who"] for line in lines if line["action"] == "publish"} == {"operator"}
-    assert "its token is unknown" in caplog.text  # what is written is caught
+    assert "its token is unknown" in caplog.text  # everything written is captured
     assert TOKEN not in caplog.text + log.read_text()
     assert log.stat().st_mode & 0o777 == 0o600
 
 
 async def test_an_error_of_the_program_comes_out_as_it_is() -> None:
-    """Not in a group: `except` finds it."""
+    """Not in a group, so that `except` finds it."""
     with pytest.raises(LookupError, match="of the program"):
         async with serving():
             raise LookupError("of the program")
@@ -169,7 +169,7 @@ async def test_another_interface_needs_a_secret() -> None:
 
 
 async def test_an_address_that_a_client_claims_is_not_believed() -> None:
-    """Any program can send such a header; it would pass for one of this host, or as another."""
+    """Any program can send such a header, to pass for a local one, or for another client."""
     claimed = {"x-forwarded-for": "203.0.113.9"}
     async with (
         serving(Policy.parse(POLICY)) as gateway,
@@ -191,7 +191,7 @@ FORWARDED = (
 
 @pytest.mark.parametrize("headers", FORWARDED, ids=lambda headers: next(iter(headers)))
 async def test_a_client_behind_a_proxy_is_not_of_this_machine(headers: dict[str, str]) -> None:
-    """The proxy is, and speaks for everybody that reaches it: only a token tells them apart."""
+    """The proxy is, and speaks for everybody that reaches it: only a token distinguishes them."""
     async with serving(Policy.parse(POLICY)) as gateway:
         assert (await get(gateway)).status_code == 200
         assert (await get(gateway, headers=headers)).status_code == 401
@@ -219,7 +219,7 @@ TRIES: tuple[tuple[str, dict[str, str], list[str] | None], ...] = (
 async def status_of(
     gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str] | None
 ) -> int:
-    """Return the status with which a request is answered, or the beginning of a WebSocket."""
+    """Return the status of the answer to a request, or to the start of a WebSocket."""
     if protocols is None:
         return (await get(gateway, path, headers)).status_code
     try:
@@ -233,7 +233,7 @@ async def status_of(
 async def test_tokens_are_tried_so_often_and_no_more(
     first: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever the way in: then not even the right one counts, as its answer would tell it."""
+    """Whatever the protocol: not even the right one counts then, or its answer would reveal it."""
     monkeypatch.setattr(
         "aionode.gateway.server.door.WRONG_NS", 10**15
     )  # the test may take some seconds
@@ -247,13 +247,14 @@ async def test_tokens_are_tried_so_often_and_no_more(
         for each in TRIES:
             assert await status_of(gateway, *each) == 429
         assert await status_of(gateway, "/topics", right, None) == 429
-        assert (await get(gateway)).status_code == 200  # who needs no token is no guesser
+        # a client that needs no token is not guessing
+        assert (await get(gateway)).status_code == 200
         await connected.send(json.dumps({"op": "call_service", "service": "/rosapi/get_time"}))
         assert json.loads(await connected.recv())["op"] == "service_response"
 
 
 def test_one_more_token_is_judged_each_second() -> None:
-    """From each place; and the memory of places is bounded."""
+    """From each place; and the number of remembered places is bounded."""
     now_ns = 0
     guesses = Guesses(lambda: now_ns)
 
@@ -281,7 +282,7 @@ def test_one_more_token_is_judged_each_second() -> None:
 
 
 async def test_what_is_too_large_is_refused() -> None:
-    """The body of a request, and a frame: a client must not take the robot's memory."""
+    """The body of a request, and a frame: a client must not exhaust the robot's memory."""
     policy = Policy.parse(f"{POLICY}\n[limits]\nframe_bytes = 1000")
     async with serving(policy) as gateway, http_client() as client:
         url = f"http://127.0.0.1:{gateway.port}/publish/x"
@@ -295,7 +296,7 @@ async def test_what_is_too_large_is_refused() -> None:
 
 
 async def test_there_are_so_many_clients_and_no_more() -> None:
-    """The next one is refused, and may come when one has left."""
+    """The next one is refused, and may connect when one has left."""
     async with serving(Policy.parse(f"{POLICY}\n[limits]\nclients = 2")) as gateway:
         async with raw_connect(gateway, "/", {}, []), raw_connect(gateway, "/", {}, []):
             await until(lambda: sum(gateway.stats.sessions.values()) == 2)
@@ -319,7 +320,7 @@ async def test_a_client_that_says_nothing_is_disconnected() -> None:
 
 
 async def test_the_stop_is_sent_when_a_connection_breaks() -> None:
-    """Without a word of the client, as when its process is killed."""
+    """Without notice from the client, as when its process is killed."""
     got: list[float] = []
     async with serving(Policy.default(allow_write=True)) as gateway:
         gateway.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x))
@@ -333,7 +334,7 @@ async def test_the_stop_is_sent_when_a_connection_breaks() -> None:
 
 
 async def test_the_stop_is_sent_when_the_gateway_ends() -> None:
-    """And its port is free then; nobody waits for clients that do not read."""
+    """Its port is then free; nobody waits for clients that do not read."""
     got: list[float] = []
     async with local_context() as context, Node("robot", context=context) as robot:
         robot.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x))
@@ -353,7 +354,7 @@ async def test_the_stop_is_sent_when_the_gateway_ends() -> None:
 async def test_the_gateway_ends_as_soon_as_its_clients_are_gone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A server that looks every 100 ms whether it may end takes 200 ms of the end of a program."""
+    """A server that checks every 100 ms whether it may end adds 200 ms to the end of a program."""
     sleeps: list[float] = []
     sleep = asyncio.sleep  # noqa: TID251  # is what the test notes
 
@@ -371,7 +372,7 @@ async def test_the_gateway_ends_as_soon_as_its_clients_are_gone(
 
 
 async def test_a_port_that_is_taken_is_an_error() -> None:
-    """And the process goes on: the server must not end it."""
+    """And the process continues: the server must not end it."""
     async with serving() as gateway:
         second = Gateway(gateway.node, port=gateway.port)
         with pytest.raises(OSError, match="in use"):
@@ -379,7 +380,7 @@ async def test_a_port_that_is_taken_is_an_error() -> None:
 
 
 async def test_the_process_is_left_as_it_was() -> None:
-    """Handlers of signals and loggers belong to the program, which may run a server of its own."""
+    """Signal handlers and loggers belong to the program, which may run its own server."""
 
     def state() -> object:
         handlers = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
@@ -398,7 +399,7 @@ async def test_the_process_is_left_as_it_was() -> None:
 
 @pytest.fixture
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have the gateway look at its policy file each hundredth of a second."""
+    """Make the gateway check its policy file every hundredth of a second."""
     monkeypatch.setattr("aionode.gateway._clients.RELOAD_SEC", 0.01)
 
 
@@ -428,7 +429,7 @@ async def test_a_policy_file_is_read_again(
 async def test_what_a_changed_policy_file_cannot_change_is_said(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The audit log goes on in another file, new WebSockets have the new limit; TLS waits."""
+    """The audit log continues in another file, new WebSockets have the new limit; TLS waits."""
     path = tmp_path / "policy.toml"
     logs = [tmp_path / "one", tmp_path / "two"]
     path.write_text(f"audit_file = '{logs[0]}'\n{POLICY}\n[limits]\nframe_bytes = 5000")
@@ -454,7 +455,7 @@ async def test_what_a_changed_policy_file_cannot_change_is_said(
 
 
 async def test_a_program_has_sessions_of_its_own() -> None:
-    """Of another way in, such as one for language models."""
+    """Of another protocol, such as one for language models."""
     async with serving() as gateway:
         async with gateway.clients.session(Identity("program"), "own") as session:
             assert "/rosout" in session.graph.topics()
@@ -470,13 +471,13 @@ async def test_a_gateway_needs_a_node_that_runs(context: Context) -> None:
 
 @pytest.fixture
 async def context() -> AsyncIterator[Context]:
-    """A context of its own."""
+    """A separate context."""
     async with local_context() as made:
         yield made
 
 
 async def test_a_client_that_reads_nothing_slows_nobody() -> None:
-    """The others get every message; what it lacks is counted, and not kept."""
+    """The others get every message; the messages it lacks are counted, and not kept."""
     async with serving() as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
         subscribing = json.dumps({"op": "subscribe", "topic": "/words", "queue_length": 5})
@@ -499,7 +500,7 @@ async def test_a_client_that_reads_nothing_slows_nobody() -> None:
 
 
 async def test_a_client_whose_frames_are_refused_is_read_slowly(bench: Bench) -> None:
-    """What comes to nothing must cost the robot next to nothing: the client has to wait."""
+    """Futile requests must cost the robot almost nothing: the client has to wait."""
     read = 0
     async with bench.session() as session, asyncio.TaskGroup() as tasks:
 
@@ -525,13 +526,13 @@ async def test_a_client_whose_frames_are_refused_is_read_slowly(bench: Bench) ->
 async def test_a_policy_that_lets_nobody_in_is_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """A file with rules alone replaces the rules that hold without a file."""
+    """A file with only rules replaces the rules that apply without a file."""
     async with serving(Policy.parse("[[allow]]\nsubscribe = '/**'")):
         assert "[[who]]" in caplog.text
 
 
 async def test_the_gateway_ends_while_a_client_that_reads_nothing_closes() -> None:
-    """What waits for the client holds up its own end, and no other's."""
+    """Waiting data delays only the end of its own connection."""
     async with asyncio.TaskGroup() as tasks:
         async with serving() as gateway:
             publisher = gateway.node.create_publisher(String, "/words", 1)

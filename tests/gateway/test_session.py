@@ -1,6 +1,6 @@
-"""Sessions: what a client does is allowed or refused, and all of it ends with the client.
+"""Sessions: a client's actions are allowed or refused, and all of them end with the client.
 
-Time is set by the tests, and there are no sockets: see `test_server.py` for those.
+Tests set the time, and there are no sockets: see `test_server.py` for those.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ async def test_what_no_rule_allows_does_not_reach_the_robot(
 
 
 async def test_a_client_sees_only_what_the_policy_shows(furnished: Bench) -> None:
-    """Names tell much; a node that is hidden is as if it were not there."""
+    """Names reveal much; a hidden node is as if it did not exist."""
     furnished.allow("[[allow]]\nsubscribe = '/words'\ncall = '/add'\n[[allow]]\ngoal = '/count'")
     async with furnished.session() as session:
         assert session.graph.topics() == {"/words": ["std_msgs/msg/String"]}
@@ -169,7 +169,7 @@ async def test_a_client_sees_only_what_the_policy_shows(furnished: Bench) -> Non
 
 @pytest.mark.parametrize("part", ["send_goal", "get_result", "cancel_goal"])
 async def test_an_action_has_no_way_in_by_its_services(furnished: Bench, part: str) -> None:
-    """Who may call all services may not send goals thereby, which nobody would cancel."""
+    """A client that may call all services must not send goals, which nobody would cancel."""
     furnished.allow("[[allow]]\ncall = '/**'")
     async with furnished.session() as session:
         with pytest.raises(RefusedError):
@@ -177,7 +177,7 @@ async def test_an_action_has_no_way_in_by_its_services(furnished: Bench, part: s
 
 
 async def test_parameters_have_no_way_in_by_their_services(furnished: Bench) -> None:
-    """Who may call all services may not set parameters thereby, and not beyond their limits."""
+    """A client that may call all services must not set parameters, nor exceed their limits."""
     speed = Parameter("speed", value=9.0).to_parameter_msg()
     request = SetParameters.Request(parameters=[speed])
     async with furnished.session() as session:
@@ -198,7 +198,7 @@ async def test_parameters_have_no_way_in_by_their_services(furnished: Bench) -> 
 async def test_a_call_gets_around_no_part_of_a_rule_for_parameters(
     furnished: Bench, more: str
 ) -> None:
-    """A person's yes, a rate and a limit are for those who set it as a parameter."""
+    """A person's approval, a rate and a limit apply to setting it as a parameter."""
     speed = Parameter("speed", value=9.0).to_parameter_msg()
     furnished.allow(f"[[allow]]\ncall = '/**'\n[[allow]]\nparameter = '/**'\n{more}")
     async with furnished.session() as session:
@@ -209,7 +209,7 @@ async def test_a_call_gets_around_no_part_of_a_rule_for_parameters(
 
 @pytest.mark.parametrize("node", ["/r{ns}obot", "/{node}", "robot", "~", "/robot/"])
 async def test_the_name_of_a_node_is_taken_as_it_is(furnished: Bench, node: str) -> None:
-    """What is expanded later would be another node than the one that the policy was asked about."""
+    """A name expanded later would be another node than the one the policy was asked about."""
     async with furnished.session() as session:
         with pytest.raises(ValueError, match="name"):
             await session.parameters.set(node, Parameter("speed", value=2.0))
@@ -218,7 +218,7 @@ async def test_the_name_of_a_node_is_taken_as_it_is(furnished: Bench, node: str)
 
 
 async def test_a_relative_name_is_judged_by_what_it_stands_for(bench: Bench) -> None:
-    """Clients of rosbridge leave out the slash."""
+    """Clients of rosbridge omit the slash."""
     bench.allow("[[allow]]\npublish = '/x'")
     async with bench.session() as session:
         await session.publish("x", {"data": "a"}, "std_msgs/String")
@@ -256,7 +256,7 @@ async def test_a_parameter_is_clamped(furnished: Bench) -> None:
 
 
 async def test_a_rate_and_a_size_are_limited(bench: Bench) -> None:
-    """For the client as a whole: a second connection gives no second rate."""
+    """For the client as a whole: a second connection does not double the rate."""
     bench.allow("[[allow]]\npublish = '/x'\nrate_hz = 2\nmax_bytes = 50")
     async with bench.session() as first, bench.session() as second:
         await publish(first)
@@ -296,7 +296,7 @@ async def settled(request: Any) -> Any:
 
 
 async def test_a_person_says_yes_or_no(furnished: Bench) -> None:
-    """Without a person to ask it is refused; a slow one keeps nobody else waiting."""
+    """Without anyone to ask it is refused; a slow person delays nobody else."""
     furnished.allow("[[allow]]\ncall = '/add'\nask = true")
     asked: list[Any] = []
     answer = asyncio.get_running_loop().create_future()
@@ -345,7 +345,7 @@ async def test_a_message_is_encoded_once_for_all_clients(bench: Bench) -> None:
 
 
 async def test_a_slow_client_keeps_its_newest_messages(bench: Bench) -> None:
-    """And slows nobody: the oldest are dropped and counted."""
+    """And slows nobody down: the oldest are dropped and counted."""
     words = bench.node.create_publisher(String, "/words", 10)
     async with bench.session() as slow, bench.session() as fast:
         await slow.subscribe("/words", frame=text_of, key="w", depth=2)
@@ -359,7 +359,7 @@ async def test_a_slow_client_keeps_its_newest_messages(bench: Bench) -> None:
 
 
 async def test_a_client_that_comes_late_gets_what_is_kept_for_it(bench: Bench) -> None:
-    """A map, a robot's description: also if another client has subscribed before."""
+    """A map, a robot description: even if another client has subscribed before."""
     maps = bench.node.create_publisher(String, "/map", LATCHED)
     maps.publish(String(data="map"))
     async with bench.session() as first, bench.session() as second:
@@ -375,7 +375,7 @@ BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 @pytest.mark.parametrize("offered", [LATCHED, BEST_EFFORT])
 async def test_a_publisher_that_comes_later_is_heard(bench: Bench, offered: QoSProfile) -> None:
-    """Whatever it offers: who subscribed first has to fit it. What it keeps, comes once."""
+    """Whatever it offers: earlier subscriptions adapt to it. Its latched messages arrive once."""
     async with bench.session() as session:
         await session.subscribe("/late", "std_msgs/String", frame=text_of, key="l")
         await settle()
@@ -388,7 +388,7 @@ async def test_a_publisher_that_comes_later_is_heard(bench: Bench, offered: QoSP
 
 
 async def test_a_subscription_is_as_strong_as_the_publishers_that_there_are(bench: Bench) -> None:
-    """Without one it asks for nothing; later it misses no message that a publisher repeats."""
+    """Without one it requests nothing; later it misses no message that a publisher repeats."""
 
     async def wanted() -> tuple[ReliabilityPolicy, DurabilityPolicy]:
         await settle()
@@ -433,7 +433,7 @@ async def test_a_rate_leaves_messages_out(bench: Bench) -> None:
 async def test_a_rate_keeps_the_newest_messages_of_a_burst(
     bench: Bench, depth: int, later: list[list[str]]
 ) -> None:
-    """The last state has to come: a light that went off may not be shown as on for ever."""
+    """The last state has to arrive: a light that went off must not be shown as on forever."""
     words = bench.node.create_publisher(String, "/words", 10)
     async with bench.session() as session:
         await session.subscribe("/words", frame=text_of, key="w", depth=depth, min_period_sec=1.0)
@@ -447,7 +447,7 @@ async def test_a_rate_keeps_the_newest_messages_of_a_burst(
 
 
 async def test_a_rate_forgets_what_waits_when_its_client_unsubscribes(bench: Bench) -> None:
-    """Nothing comes after the end."""
+    """Nothing arrives after the end."""
     words = bench.node.create_publisher(String, "/words", 10)
     async with bench.session() as session:
         subscribed = await session.subscribe("/words", frame=text_of, key="w", min_period_sec=1.0)
@@ -460,7 +460,7 @@ async def test_a_rate_forgets_what_waits_when_its_client_unsubscribes(bench: Ben
 
 
 async def test_a_message_that_does_not_fit_is_refused(bench: Bench) -> None:
-    """With the field that is wrong; nothing is sent."""
+    """The error names the wrong field; nothing is sent."""
     async with bench.session() as session:
         with pytest.raises(MessageError, match="data"):
             await session.publish("/x", {"data": 5}, "std_msgs/String")
@@ -474,7 +474,7 @@ async def test_a_message_that_does_not_fit_is_refused(bench: Bench) -> None:
 
 
 async def test_a_session_that_ends_gives_everything_back(furnished: Bench) -> None:
-    """The robot's graph is as it was, ten seconds later at most."""
+    """The robot's graph is as before, at most ten seconds later."""
     before = set(furnished.context.graph.endpoints())
     async with furnished.session() as session:
         for act, _ in ACTIONS:
@@ -485,7 +485,7 @@ async def test_a_session_that_ends_gives_everything_back(furnished: Bench) -> No
 
 
 async def test_a_goal_is_cancelled_with_its_client(bench: Bench) -> None:
-    """Motion ends with whoever asked for it, also if the client just closes its connection."""
+    """Motion ends when its client has gone, even if it just closes its connection."""
     ended: list[str] = []
 
     async def drive(goal: Any) -> Any:
@@ -536,7 +536,7 @@ async def test_who_calls_a_service_of_a_client_that_leaves_gets_an_error(bench: 
 
 
 async def failure_of(work: Awaitable[Any]) -> Exception:
-    """Return what work raises."""
+    """Return the exception that work raises."""
     try:
         await work
     except ServiceError as error:
@@ -547,7 +547,7 @@ async def failure_of(work: Awaitable[Any]) -> Exception:
 async def test_an_error_of_a_client_reaches_who_called_its_service(
     bench: Bench, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """And leaves no traceback in the log of the robot."""
+    """Without a traceback in the robot's log."""
 
     async def fail(request: Any) -> Any:
         raise ValueError("no such thing")
@@ -561,7 +561,7 @@ async def test_an_error_of_a_client_reaches_who_called_its_service(
 
 
 async def test_a_policy_that_is_read_again_ends_what_it_does_not_allow(bench: Bench) -> None:
-    """Without dropping the client, and what it still allows goes on."""
+    """The client stays connected, and whatever is still allowed continues."""
     words = bench.node.create_publisher(String, "/words", 10)
     numbers = bench.node.create_publisher(Int32, "/numbers", 10)
     async with bench.session() as session:
@@ -580,7 +580,7 @@ async def test_a_policy_that_is_read_again_ends_what_it_does_not_allow(bench: Be
 async def test_a_client_that_may_not_publish_or_offer_any_more_is_disconnected(
     bench: Bench, does: Callable[[Session], Awaitable[None]]
 ) -> None:
-    """Which ends its leases, goals and services."""
+    """This ends its leases, goals and services."""
     async with bench.session() as session:
         await does(session)
         session.check_again()
@@ -594,7 +594,7 @@ async def test_a_client_that_may_not_publish_or_offer_any_more_is_disconnected(
 
 
 async def test_the_audit_log_says_who_did_what(furnished: Bench) -> None:
-    """Also what was refused."""
+    """Including refusals."""
     furnished.allow("[[allow]]\ncall = '/add'")
     async with furnished.session("operator") as session:
         await call(session)
@@ -610,7 +610,7 @@ async def test_the_audit_log_says_who_did_what(furnished: Bench) -> None:
 
 
 async def test_a_client_that_asks_in_vain_does_not_fill_the_audit_log(bench: Bench) -> None:
-    """So many refusals a second are written, and the others counted."""
+    """A limited number of refusals per second is written, and the others are counted."""
     bench.robot.policy = NOTHING
     async with bench.session() as session:
         for _ in range(100):
@@ -620,6 +620,6 @@ async def test_a_client_that_asks_in_vain_does_not_fill_the_audit_log(bench: Ben
     for result in ("succeeded", "failed: why"):
         bench.robot.audit.note(session.identity, "goal", "/" + "x" * 9999, result=result)
     await settle()
-    assert len(bench.lines) == 22  # what was done is written all the same, in short
+    assert len(bench.lines) == 22  # actions are still written, shortened
     assert bench.robot.audit.lost == 80
     assert len(json.dumps(bench.lines[-1])) < 5000

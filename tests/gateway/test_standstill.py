@@ -1,4 +1,4 @@
-"""A gateway that stood still: commands that waited meanwhile must move nothing."""
+"""A gateway that was stalled: commands that waited meanwhile must not move anything."""
 
 from __future__ import annotations
 
@@ -58,20 +58,20 @@ def request(speed: float) -> bytes:
 
 
 def listen(gateway: Gateway) -> list[float]:
-    """Return the speeds that the wheels get."""
+    """Return the speeds that the wheels receive."""
     got: list[float] = []
     gateway.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x), 100)
     return got
 
 
 def stand_still(seconds: float = 0.6) -> None:
-    """Block the loop, as a callback of the robot does."""
+    """Block the loop, like a callback of the robot."""
     time.sleep(seconds)
 
 
 @pytest.mark.parametrize("has_lease", [True, False], ids=["a holder", "one without a lease"])
 async def test_nothing_that_waited_in_a_standstill_reaches_the_wheels(has_lease: bool) -> None:
-    """The page has let go by then; what comes behind the answer to a ping was sent after it."""
+    """The page has been released by then; data after the pong was sent after the ping."""
     async with serving(Policy.parse(POLICY)) as gateway:
         got = listen(gateway)
         reader, writer, _ = await upgraded(gateway)
@@ -83,7 +83,7 @@ async def test_nothing_that_waited_in_a_standstill_reaches_the_wheels(has_lease:
         stand_still()
         session = session_of(gateway)
         await until(lambda: session.rights.refused == 20)
-        for _ in range(1 + has_lease):  # the end of its lease is a reason of its own to ask
+        for _ in range(1 + has_lease):  # the end of its lease is another reason to ping
             writer.write(frame(await ping_of(reader), PONG))
         await until(lambda: not session.arrivals.is_doubtful)
         writer.write(frame(drive(2.0).encode()))
@@ -95,7 +95,7 @@ async def test_nothing_that_waited_in_a_standstill_reaches_the_wheels(has_lease:
 
 @pytest.mark.parametrize("is_new", [True, False], ids=["a new connection", "one that was open"])
 async def test_a_request_that_waited_in_a_standstill_moves_nothing(is_new: bool) -> None:
-    """HTTP has no ping, so for a moment everything is refused; a program sends it again."""
+    """HTTP has no ping, so everything is refused for a moment; a program repeats its request."""
     async with serving(Policy.parse(POLICY)) as gateway:
         got = listen(gateway)
         reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
@@ -117,7 +117,7 @@ async def test_a_request_that_waited_in_a_standstill_moves_nothing(is_new: bool)
 
 
 async def test_a_standstill_loses_no_client() -> None:
-    """The signs of its client have arrived meanwhile, and are heard before it counts as lost."""
+    """Its client's signs of life have arrived meanwhile, and are read before it counts as lost."""
     limits = "[limits]\nclient_lost_sec = 1.0\n"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
         reader, writer, _ = await upgraded(gateway)
@@ -132,7 +132,7 @@ async def test_a_standstill_loses_no_client() -> None:
 
 
 async def test_a_late_look_is_a_standstill() -> None:
-    """Whoever looks first finds it: the alarm, or who reads a frame in the same turn."""
+    """The first check finds it: that of the alarm, or of a frame read in the same iteration."""
     clock = ManualClock()
     found: list[int] = []
     watch = Standstills(clock)
@@ -141,7 +141,7 @@ async def test_a_late_look_is_a_standstill() -> None:
         await clock.advance(0.03)
     assert found == []
     assert watch.until_ns == -1
-    await clock.jump(0.5)  # the alarm looks
+    await clock.jump(0.5)  # the alarm checks
     clock.stall(0.5)
     watch.look()  # before the alarm
     assert [round(each / 1e9, 1) for each in found] == [3.5, 4.0]
@@ -154,7 +154,7 @@ async def test_a_late_look_is_a_standstill() -> None:
 
 
 class Connection:
-    """A connection that keeps what is to be called with the answers to its pings."""
+    """A connection that keeps the functions to call with its pongs."""
 
     def __init__(self) -> None:
         self.asked: list[Any] = []
@@ -164,7 +164,7 @@ class Connection:
         return 0.0
 
     def has_unread(self) -> bool:
-        """Return whether something waits."""
+        """Return whether data is waiting."""
         return False
 
     def ping(self, answered: Any = None) -> None:
@@ -172,7 +172,7 @@ class Connection:
         self.asked.append(answered)
 
     def abort(self) -> None:
-        """Close nothing."""
+        """Do nothing."""
 
 
 async def receive() -> dict[str, str]:
@@ -181,7 +181,7 @@ async def receive() -> dict[str, str]:
 
 
 async def test_a_client_that_was_not_read_for_a_while_is_doubted(bench: Bench) -> None:
-    """Its commands wait in the kernel while the gateway lets it wait for what was refused."""
+    """Its commands wait in the kernel while the gateway delays it because of refusals."""
     async with bench.session() as session, asyncio.TaskGroup() as tasks:
         session.arrivals.connection = Connection()
 
@@ -197,7 +197,7 @@ async def test_a_client_that_was_not_read_for_a_while_is_doubted(bench: Bench) -
 
 
 async def test_a_driver_who_is_refused_is_read_as_before(bench: Bench) -> None:
-    """Another one drives: if it had to wait, its old commands would count when that one ends."""
+    """Another one drives: if it had to wait, its old commands would count once that one ends."""
     async with bench.session() as session:
         receive_paced = paced(receive, 1000.0, bench.robot, session)
         session.rights.refused = session.rights.refused_cheaply = 10 * round(REFUSALS_PER_SEC)
@@ -205,7 +205,7 @@ async def test_a_driver_who_is_refused_is_read_as_before(bench: Bench) -> None:
 
 
 async def test_the_answer_to_an_earlier_ping_leaves_a_later_doubt(bench: Bench) -> None:
-    """It may have been under way for long; what comes behind it is older than the later doubt."""
+    """It may have been in transit for long; data after it may be older than the later doubt."""
     async with bench.session() as session:
         session.arrivals.connection = connection = Connection()
         session.doubt()
@@ -249,24 +249,24 @@ REQUESTS: dict[str, tuple[str, str, Any]] = {
 
 
 class Deeds:
-    """A robot that does what clients ask for."""
+    """A robot that does what clients request."""
 
     def __init__(self) -> None:
         self.done: list[str] = []
 
     def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-        """Note a call."""
+        """Record a call."""
         self.done.append("call")
         return AddTwoInts.Response(sum=request.a + request.b)
 
     async def move(self, goal: Any) -> Fibonacci.Result:
-        """Note a goal."""
+        """Record a goal."""
         self.done.append("goal")
         goal.succeed()
         return Fibonacci.Result()
 
     def set_speed(self, _: list[Parameter]) -> SetParametersResult:
-        """Note a parameter."""
+        """Record a parameter."""
         self.done.append("parameter")
         return SetParametersResult(successful=True)
 
@@ -287,7 +287,7 @@ async def serving_deeds() -> AsyncIterator[tuple[Gateway, Deeds]]:
 
 
 async def answer_of(client: ClientConnection) -> dict[str, Any]:
-    """Return the answer to an op, without what else there is to tell."""
+    """Return the answer to an op, ignoring other ops."""
     while True:
         told: dict[str, Any] = json.loads(await client.recv())
         if told.get("op") in {"service_response", "action_result"}:
@@ -316,7 +316,7 @@ async def test_what_a_page_asked_for_in_a_standstill_is_not_done(what: str) -> N
 
 @pytest.mark.parametrize("what", REQUESTS)
 async def test_what_a_request_asked_for_in_a_standstill_is_not_done(what: str) -> None:
-    """Its program is told to send it again, and a later one is done."""
+    """Its program is told to repeat it, and a later request succeeds."""
     method, path, values = REQUESTS[what]
     body = json.dumps(values).encode()
     asked = (
@@ -341,7 +341,7 @@ async def test_what_a_request_asked_for_in_a_standstill_is_not_done(what: str) -
 
 
 async def test_a_call_that_waited_for_a_moment_is_made() -> None:
-    """A busy machine holds up a loop for that long, and a call is not repeated as commands are."""
+    """A busy machine delays a loop for that long, and calls are not repeated like commands."""
     async with serving_deeds() as (gateway, deeds), raw_connect(gateway, "/", {}, []) as client:
         await client.send(json.dumps(OPS["call"]))
         stand_still()
@@ -363,7 +363,7 @@ async def test_a_call_that_waits_when_the_gateway_stands_still_is_not_made(bench
 
 
 async def test_a_call_after_a_silence_of_its_client_is_made(bench: Bench) -> None:
-    """Who lets go of a stick and clicks is silent for the time to live of a lease, and no more."""
+    """A user who releases a stick and clicks is silent only for a lease's time to live."""
     bench.node.create_service(AddTwoInts, "/add", Deeds().add)
     async with bench.session() as session:
         session.arrivals.connection = Connection()
@@ -372,7 +372,7 @@ async def test_a_call_after_a_silence_of_its_client_is_made(bench: Bench) -> Non
 
 
 async def refusal_of(asking: Awaitable[Any]) -> RefusedError:
-    """Return how something is refused."""
+    """Return the refusal of something."""
     with pytest.raises(RefusedError) as refused:
         await asking
     return refused.value

@@ -49,7 +49,7 @@ Trust = Callable[..., ssl.SSLContext]
 
 @pytest.fixture(scope="module")
 def authorities() -> dict[str, trustme.CA]:
-    """Make the authority of the gateway, that of its clients, and one that nobody knows."""
+    """Create the authority of the gateway, that of its clients, and an unknown one."""
     return {name: trustme.CA() for name in ("server", "clients", "stranger")}
 
 
@@ -65,7 +65,7 @@ def folder(tmp_path: Path, authorities: dict[str, trustme.CA]) -> Path:
 
 @pytest.fixture
 def trust(authorities: dict[str, trustme.CA]) -> Trust:
-    """Return what makes the context of a client, with a certificate of an authority or without."""
+    """Return a function that creates a client's TLS context, with or without a certificate."""
 
     def make(authority: str | None, name: str = "driver.example") -> ssl.SSLContext:
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
@@ -109,7 +109,7 @@ def policy(folder: Path, more: str = "") -> Policy:
 async def test_a_certificate_tells_who_a_client_is(
     folder: Path, trust: Trust, protocol: str
 ) -> None:
-    """By its common name, on every way in; what a token says comes with no certificate."""
+    """By its common name, over every protocol; a certificate needs no token."""
     async with serving(policy(folder, LOCAL)) as gateway:
         names = []
         for context, token in ((trust("clients"), ""), (trust(None), TOKEN), (trust(None), "")):
@@ -125,7 +125,7 @@ async def test_a_certificate_tells_who_a_client_is(
 async def test_a_certificate_that_nobody_has_signed_cannot_connect(
     folder: Path, trust: Trust
 ) -> None:
-    """Also if its name is right, and the policy knows this machine."""
+    """Even if its name is right, and the policy knows this machine."""
     async with serving(policy(folder, LOCAL)) as gateway:
         stranger = trust("stranger")
         with pytest.raises((httpx.ReadError, httpx.ConnectError, httpx.RemoteProtocolError)):
@@ -149,14 +149,14 @@ async def test_without_a_certificate_it_is_what_the_policy_says(folder: Path, tr
 
 
 async def test_a_name_that_the_policy_does_not_know_is_nobody(folder: Path, trust: Trust) -> None:
-    """The authority signs the certificates of others as well."""
+    """The authority may sign certificates of others as well."""
     other = trust("clients", "other.example")
     async with serving(policy(folder)) as gateway:
         assert (await get(gateway, other)).status_code == 401
 
 
 async def test_who_does_not_speak_tls_is_disconnected(folder: Path) -> None:
-    """At once, or when the time for the handshake is over: asyncio would give a minute."""
+    """At once, or when the time for the handshake has passed: asyncio would allow a minute."""
     async with serving(policy(folder)) as gateway:
         for beginning in (b"", b"\x16\x03\x01", b"GET /topics HTTP/1.1\r\n\r\n"):
             reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
@@ -167,7 +167,7 @@ async def test_who_does_not_speak_tls_is_disconnected(folder: Path) -> None:
 
 
 async def test_large_and_many_frames_pass_through_tls(folder: Path, trust: Trust) -> None:
-    """They arrive in other pieces than over TCP alone."""
+    """They arrive in other pieces than over plain TCP."""
     got: list[int] = []
     async with (
         serving(policy(folder)) as gateway,

@@ -13,7 +13,7 @@ from aionode.message import Message
 
 
 def test_a_message_is_an_interface_with_those_nested_in_it() -> None:
-    """A program that takes the types of one message needs no second command."""
+    """A program that needs the types of one message needs no second command."""
     text = typescript([Twist])
 
     assert "export namespace geometry_msgs.msg {" in text
@@ -36,7 +36,7 @@ def test_a_message_to_send_has_no_null() -> None:
 
 
 def test_a_service_and_an_action_are_maps_of_their_parts() -> None:
-    """A program names the type by the name that the robot has for it."""
+    """A program uses the robot's name for the type."""
     text = typescript(
         [AddTwoInts, Fibonacci, String],
         topics={"/chatter": "std_msgs/msg/String", "/unknown": "other_msgs/msg/Unknown"},
@@ -52,7 +52,7 @@ def test_a_service_and_an_action_are_maps_of_their_parts() -> None:
 
 
 def test_constants_are_told_as_numbers() -> None:
-    """A declaration has no values, so the comment has them."""
+    """A declaration has no values, so they are in the comment."""
     assert "   * byte ERROR = 2" in typescript([DiagnosticStatus])
 
 

@@ -1,4 +1,4 @@
-"""Clients in processes of their own, which vanish while the robot moves: the stop is sent.
+"""Clients in separate processes that vanish while the robot moves: the stop is sent.
 
 `make gateway-load` measures how soon, many times.
 """
@@ -19,7 +19,7 @@ SOON_SEC = 5.0
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
 async def test_the_stop_is_sent_when_a_client_is_killed_or_frozen(how: signal.Signals) -> None:
-    """Neither says goodbye; the frozen one even keeps its connection."""
+    """Neither sends a close frame; the frozen one even keeps its connection."""
     assert len(await stops_after(how)) == 1
 
 
@@ -27,7 +27,7 @@ async def test_the_stop_is_sent_when_a_client_is_killed_or_frozen(how: signal.Si
 async def test_the_wheels_stop_when_the_gateway_is_killed_or_frozen(
     how: signal.Signals, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Nobody sends a stop then: it is the wheels that notice the silence."""
+    """Nobody sends a stop then: the wheels themselves notice the silence."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
 

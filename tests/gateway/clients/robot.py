@@ -21,7 +21,7 @@ from aionode.interfaces.std_msgs.msg import String
 
 
 class AddTwoIntsServer(Node):
-    """What the examples of roslibjs expect of a robot."""
+    """The robot that the examples of roslibjs expect."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("add_two_ints_server", context=context)
@@ -40,7 +40,7 @@ class AddTwoIntsServer(Node):
         self.words.publish(String(data="Hello, World"))
 
     def accept(self, goal: object) -> CancelResponse:
-        """Let every goal be canceled."""
+        """Accept every request to cancel a goal."""
         return CancelResponse.ACCEPT
 
     async def count(self, goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:

@@ -1,7 +1,7 @@
-"""What agents do with ros-mcp, beside a robot of robot.py: ``python ros_mcp_checks.py PORT``.
+"""The checks of ros-mcp as agents use it, against robot.py: ``python ros_mcp_checks.py PORT``.
 
-It runs in an environment of its own, which has ros-mcp and no aionode. Each tool is called as an
-agent calls it; what it answers has to contain what the robot has, and no error.
+It runs in its own environment, which has ros-mcp but not aionode. Each tool is called as an agent
+calls it; the answer has to contain the robot's data and no error.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ CALLS: list[tuple[str, dict[str, Any], str]] = [
     ("set_parameter", {"name": SPEED, "value": "2.5"}, "true"),
     ("get_parameter_details", {"name": SPEED}, "2.5"),
 ]
-"""A tool, what it is asked, and a part of its answer as JSON without spaces."""
+"""A tool, its arguments, and a part of its answer as JSON without spaces."""
 
 
 async def main(port: int) -> int:
@@ -58,7 +58,7 @@ async def main(port: int) -> int:
     failed = 0
     robot = {"ip": "127.0.0.1", "port": port}
     async with Client(mcp) as agent:
-        await agent.call_tool("connect_to_robot", robot)  # which also asks for ping of the system
+        await agent.call_tool("connect_to_robot", robot)  # which also calls the system's ping
         for name, arguments, expected in CALLS:
             answer = await agent.call_tool(name, arguments, raise_on_error=False)
             texts = (str(getattr(each, "text", "")) for each in answer.content)

@@ -1,6 +1,6 @@
-"""What programs do with roslibpy, beside a robot of robot.py: ``python roslibpy_checks.py PORT``.
+"""The checks of roslibpy as programs use it, against robot.py: ``python roslibpy_checks.py PORT``.
 
-It runs in an environment of its own, which has roslibpy and no aionode.
+It runs in its own environment, which has roslibpy but not aionode.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
 class Answers:
-    """Waits for what a callback gets."""
+    """Waits for the arguments of a callback."""
 
     def __init__(self) -> None:
         self.values: list[object] = []
         self._arrived = threading.Event()
 
     def take(self, value: object = None) -> None:
-        """Take an answer."""
+        """Record an answer."""
         self.values.append(value)
         self._arrived.set()
 
@@ -32,7 +32,7 @@ class Answers:
 
 
 def check_topics(ros: roslibpy.Ros) -> None:
-    """Messages arrive, and those of a client reach the robot."""
+    """Messages arrive, and the client's messages reach the robot."""
     answers = Answers()
     topic = roslibpy.Topic(ros, "/chatter", "std_msgs/String")
     topic.subscribe(answers.take)
@@ -42,7 +42,7 @@ def check_topics(ros: roslibpy.Ros) -> None:
 
 
 def check_services(ros: roslibpy.Ros) -> None:
-    """Calls are answered, also those that fail; a client may serve."""
+    """Calls are answered, including those that fail; a client may serve."""
     add = roslibpy.Service(ros, "/add_two_ints", "example_interfaces/AddTwoInts")
     assert add.call(roslibpy.ServiceRequest({"a": 1, "b": 2}), timeout=10) == {"sum": 3}
     failed = Answers()

@@ -1,4 +1,4 @@
-"""Clients of the gateway as their users install them: `make rosbridge-clients` fetches them.
+"""Clients of the gateway as installed by users: `make rosbridge-clients` downloads them.
 
 Without AIONODE_ROSLIB (the file ``RosLib.js`` of npm's roslib), AIONODE_ROSLIBPY (a Python that has
 roslibpy and ros-mcp) and AIONODE_FOXGLOVE (a ``node_modules`` with @foxglove/ws-protocol and ws)
@@ -68,7 +68,7 @@ def test_roslib_of_npm(roslib: str, port: str) -> None:
 
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 async def test_roslib_of_npm_in_a_browser(roslib: str) -> None:
-    """Pages use this library: here one of another origin, which the policy lists."""
+    """Pages use this library: here a page of another origin, which the policy lists."""
     modules = next(each for each in Path(roslib).parents if each.name == "node_modules")
     files = {
         "/page": HERE / "roslib_page.html",

@@ -1,4 +1,4 @@
-"""A gateway under load, in the process of the robot's nodes; its clients in others."""
+"""A gateway under load, in the process of the robot's nodes; its clients run in others."""
 
 from __future__ import annotations
 
@@ -28,23 +28,24 @@ TICK_S = 0.002
 TOPIC = "/load"
 
 GAP_LIMIT_S = 0.02
-"""How much longer than without clients the loop of the robot may stand still by itself."""
+"""How much longer the robot's loop may stall by itself than without clients."""
 
 GARBAGE_LIMIT = 0.05
-"""How much of a core the gateway may take for garbage."""
+"""The share of a core that the gateway may use for garbage."""
 
 GROWTH_BYTES = 8 << 20
-"""How much more memory may be in use at the end than in the first seconds: that of a frame."""
+"""How much more memory may be in use at the end than in the first seconds: the size of a frame."""
 
 SETTLE_S = 5.0
-"""After how long the memory is measured: queues have filled up, and buffers have their size."""
+"""When memory is measured first: queues have filled up, and buffers have reached their size."""
 
 PADDING = "x" * 4000
-"""Makes messages long: the sockets of a client that reads nothing are full in ten seconds."""
+"""Makes messages long, so that the sockets of a client that reads nothing are full in ten
+seconds."""
 
 
 class Row(NamedTuple):
-    """What came of a case.
+    """The outcome of a case.
 
     Attributes:
         what: The case.
@@ -58,7 +59,7 @@ class Row(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """What the clients of one run got, and how the robot's process fared meanwhile.
+    """What the clients of one run received, and how the robot's process performed meanwhile.
 
     Attributes:
         local: How many of the messages a local subscription lacks.
@@ -84,7 +85,7 @@ class Heard(NamedTuple):
 
 
 class Gaps:
-    """How long the event loop does not turn at most, from `begin` on."""
+    """Measures the longest stall of the event loop, from `begin` on."""
 
     def __init__(self) -> None:
         self.gap_s = self.own_gap_s = 0.0
@@ -93,7 +94,7 @@ class Gaps:
         self._timer: asyncio.TimerHandle | None = None
 
     def begin(self) -> None:
-        """Begin anew."""
+        """Start over."""
         self.end()
         self.gap_s = self.own_gap_s = 0.0
         self._core_wait = CoreWait()
@@ -101,7 +102,7 @@ class Gaps:
         self._timer = asyncio.get_running_loop().call_later(TICK_S, self._tick)
 
     def end(self) -> None:
-        """Measure no more."""
+        """Stop measuring."""
         if self._timer is not None:
             self._timer.cancel()
 
@@ -134,14 +135,14 @@ class Robot:
         self._heard.add(number_of(message))
 
     async def until(self, ready: Awaitable[Any]) -> None:
-        """Publish the number 0 until something is there."""
+        """Publish the number 0 until something exists."""
         waiting = asyncio.ensure_future(ready)
         while not waiting.done():
             self._publisher.publish(self._message(0))
             await self._sleep(0.3)
 
     async def run(self, rate_hz: float, seconds: float) -> Heard:
-        """Publish numbers, and return how the process fared; what clients got is added later."""
+        """Publish numbers, and return how the process performed, yet without clients' results."""
         count = round(rate_hz * seconds)
         memory = memory_bytes()
         self.gaps.begin()
@@ -181,7 +182,7 @@ def image(number: int) -> Image:
 
 
 def memory_bytes() -> int:
-    """Return how much memory this process takes; 0 where the system does not tell."""
+    """Return the memory used by this process; 0 where the system does not report it."""
     path = Path("/proc/self/statm")
     return int(path.read_text("ascii").split()[1]) * 4096 if path.exists() else 0
 
@@ -201,7 +202,7 @@ async def robot_with_gateway(
 
 
 async def reader(robot: Robot, compression: str, clients: int, last: int, deaf: int = 0) -> Process:
-    """Start clients, and wait until each of them has got a message."""
+    """Start clients, and wait until each of them has received a message."""
     op = {"op": "subscribe", "topic": TOPIC, "compression": compression, "queue_length": 1000}
     options = {
         "port": robot.gateway.port,
@@ -217,7 +218,7 @@ async def reader(robot: Robot, compression: str, clients: int, last: int, deaf: 
 
 
 async def started(program: Path, *arguments: str) -> Process:
-    """Start a program that needs nothing but Python."""
+    """Start a program that needs only Python."""
     argv = (sys.executable, "-S", str(program), *arguments)
     return await asyncio.create_subprocess_exec(*argv, stdin=PIPE, stdout=PIPE)
 
@@ -230,7 +231,7 @@ async def run_with_clients(
     clients: int,
     deaf: int = 0,
 ) -> tuple[Heard, Heard]:
-    """Run a robot without clients, and with them; return how it fared in each."""
+    """Run a robot without clients, and with them; return how it performed in each case."""
     async with robot_with_gateway(message) as robot:
         await robot.until(asyncio.sleep(0.2))
         control = await robot.run(rate_hz, seconds / 3)
@@ -246,7 +247,7 @@ async def run_with_clients(
 
 
 def judged(what: str, count: int, control: Heard, heard: Heard) -> Row:
-    """Return the row of a run with clients."""
+    """Return the row for a run with clients."""
     more_s = heard.own_gap_s - control.own_gap_s
     before, after = heard.memory_bytes
     told = [
@@ -269,7 +270,7 @@ def judged(what: str, count: int, control: Heard, heard: Heard) -> Row:
 
 
 async def crowd(seconds: float, clients: int = 49, rate_hz: float = 100.0) -> Row:
-    """Return what many clients get beside one that reads nothing."""
+    """Return what many clients receive beside one that reads nothing."""
     what = f"{clients} clients and one that reads nothing, {rate_hz:.0f} Hz, JSON of 4 kB"
     control, heard = await run_with_clients(text, rate_hz, seconds, "none", clients, deaf=1)
     row = judged(what, round(rate_hz * seconds), control, heard)
@@ -279,7 +280,7 @@ async def crowd(seconds: float, clients: int = 49, rate_hz: float = 100.0) -> Ro
 
 
 async def images(seconds: float, compression: str, clients: int, rate_hz: float) -> Row:
-    """Return what clients get of images of 6 MB."""
+    """Return what clients receive of images of 6 MB."""
     kind = "JSON" if compression == "none" else compression
     what = f"images of 6 MB at {rate_hz:.0f} Hz to {clients} clients by {kind}"
     control, heard = await run_with_clients(image, rate_hz, seconds, compression, clients)
@@ -287,7 +288,7 @@ async def images(seconds: float, compression: str, clients: int, rate_hz: float)
 
 
 async def garbage(seconds: float, kind: str, rate_hz: float = 10_000.0) -> Row:
-    """Return what garbage of one client costs the gateway."""
+    """Return what the garbage of one client costs the gateway."""
     what = f"garbage at {rate_hz:.0f} frames/s: {kind}"
     async with robot_with_gateway(text, Policy.default()) as robot:
         await asyncio.sleep(0.2)
@@ -317,7 +318,7 @@ async def garbage(seconds: float, kind: str, rate_hz: float = 10_000.0) -> Row:
 
 
 async def cost(robot: Robot, seconds: float) -> Heard:
-    """Return how the process fares for some seconds, without publishing."""
+    """Return how the process performs for some seconds without publishing."""
     robot.gaps.begin()
     began_s, cpu_s = time.monotonic(), time.process_time()
     await asyncio.sleep(seconds)

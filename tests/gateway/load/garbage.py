@@ -1,9 +1,9 @@
 """A client that sends garbage to a gateway: ``python garbage.py PORT SECONDS RATE KIND``.
 
-It offers so many frames a second, of a kind of `KINDS`, and connects again when it is disconnected.
-What the gateway does not read is not sent: then it is the client that has to wait. It prints JSON:
-how many frames it offered and how many left, and how often it was disconnected. It has its frames
-made beforehand, and sends many at once.
+It sends a number of frames per second, of one of `KINDS`, and reconnects when it is disconnected.
+Frames that the gateway does not read are not sent, so the client has to wait. It prints JSON: the
+numbers of frames planned and sent, and of disconnections. Its frames are prepared in advance and
+sent many at a time.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def main(port: int, seconds: float, rate_hz: float, kind: str) -> None:
             connection, waiting = opened(port), b""
             connection.setblocking(False)
         offered += len(batch) // size
-        waiting = waiting or batch  # what was not read is not offered once more
+        waiting = waiting or batch  # unread frames are not sent again
         try:
             with contextlib.suppress(BlockingIOError):
                 while connection.recv(1 << 16):

@@ -35,7 +35,7 @@ __all__ = [
 
 TTL_SEC = 0.3
 LATE_SEC = 0.1
-"""How much later than its time to live the stop may come, without the waits for a core."""
+"""How much later than its time to live the stop may arrive, without waits for a core."""
 
 POLICY = f"""
 [[who]]
@@ -58,7 +58,7 @@ with connect(sys.argv[1], proxy=None) as socket:
 
 @contextmanager
 def ended(process: subprocess.Popen[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-    """End a process, in whatever state it is then."""
+    """End a process, whatever its state."""
     try:
         yield process
     finally:
@@ -67,25 +67,25 @@ def ended(process: subprocess.Popen[bytes]) -> Iterator[subprocess.Popen[bytes]]
 
 
 def driving(port: int) -> AbstractContextManager[subprocess.Popen[bytes]]:
-    """Start a client that drives, and end it."""
+    """Start a client that drives, and end it afterwards."""
     url = f"ws://127.0.0.1:{port}"
     return ended(subprocess.Popen([sys.executable, "-c", DRIVER, url], stderr=subprocess.DEVNULL))
 
 
 def serving(*options: str) -> AbstractContextManager[subprocess.Popen[bytes]]:
-    """Start a gateway, and end it."""
+    """Start a gateway, and end it afterwards."""
     argv = [sys.executable, "-m", "aionode", "gateway", *options]
     return ended(subprocess.Popen(argv, stdout=subprocess.DEVNULL))
 
 
 def waited_sec() -> float:
-    """Return for how long this process has waited for a core so far."""
+    """Return how long this process has waited for a core so far."""
     path = Path("/proc/self/schedstat")
     return int(path.read_text().split()[1]) / 1e9 if path.exists() else 0.0
 
 
 async def stops_after(how: signal.Signals, times: int = 1) -> list[float]:
-    """Return after how many seconds the stop came, without the waits for a core."""
+    """Return the delay of the stop in seconds, without waits for a core."""
     got: list[float] = []
     found: list[float] = []
     async with (
@@ -107,7 +107,7 @@ async def stops_after(how: signal.Signals, times: int = 1) -> list[float]:
 
 
 class Silence(NamedTuple):
-    """How the wheels of a robot noticed that its gateway is gone.
+    """How the wheels of a robot noticed that its gateway was gone.
 
     Attributes:
         after_sec: After how many seconds, without the waits for a core.
@@ -119,7 +119,7 @@ class Silence(NamedTuple):
 
 
 async def silences(how: signal.Signals, folder: Path, times: int = 1) -> list[Silence]:
-    """Return how the wheels notice that their gateway is killed or frozen, while a client drives.
+    """Return how the wheels notice that their gateway was killed or frozen while a client drives.
 
     Args:
         how: The signal that the gateway gets.
@@ -159,7 +159,7 @@ async def silence(how: signal.Signals, port: int, options: list[str]) -> Silence
 
 
 async def client_vanishes(how: signal.Signals, times: int) -> Row:
-    """Return how soon the robot stops when the client that drives it is killed or frozen."""
+    """Return how soon the robot stops when the driving client is killed or frozen."""
     after = await stops_after(how, times)
     late = sum(each > TTL_SEC + LATE_SEC for each in after)
     problems = [f"{late} stops came too late"] * bool(late)
@@ -168,7 +168,7 @@ async def client_vanishes(how: signal.Signals, times: int) -> Row:
 
 
 async def gateway_vanishes(how: signal.Signals, times: int) -> Row:
-    """Return how soon the wheels notice that the gateway is killed or frozen."""
+    """Return how soon the wheels notice that the gateway was killed or frozen."""
     with tempfile.TemporaryDirectory() as folder:
         found = await silences(how, Path(folder), times)
     after = [each.after_sec for each in found]
@@ -181,7 +181,7 @@ async def gateway_vanishes(how: signal.Signals, times: int) -> Row:
 
 
 def counted(after: list[float], limit_sec: float, what: str) -> str:
-    """Return how many of some times are within a limit."""
+    """Return how many times are within a limit."""
     within = sum(each <= limit_sec for each in after)
     return (
         f"{what} within {limit_sec:g} s {within} of {len(after)} times, less the waits for a core; "
