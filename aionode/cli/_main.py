@@ -36,6 +36,7 @@ NOUNS = {
     "graph": "Draw nodes and what they share; show what does not match.",
     "interface": "Show message, service and action types.",
     "launch": "Start the processes and nodes of a launch file.",
+    "learn": "Turn demonstrations into data sets for robot learning.",
     "lifecycle": "Show and change the states of managed nodes.",
     "mcp": "Let a language model's program use the robot.",
     "new": "Write a package with a node, a message and a test.",

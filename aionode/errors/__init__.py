@@ -15,6 +15,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── ConfigurationError (ValueError)
     ├── ContentFilterError (ValueError)
     ├── ContractError (ValueError)
+    ├── DatasetError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
@@ -112,7 +113,7 @@ from aionode.errors._interfaces import (
     MessageError,
     TypeDescriptionError,
 )
-from aionode.errors._learn import ContractError
+from aionode.errors._learn import ContractError, DatasetError
 from aionode.errors._names import (
     InvalidLogLevelError,
     InvalidNamespaceException,
@@ -187,6 +188,7 @@ __all__ = [
     "ConnectivityException",
     "ContentFilterError",
     "ContractError",
+    "DatasetError",
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",

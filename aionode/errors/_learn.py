@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from aionode.errors._base import AionodeError
 
-__all__ = ["ContractError"]
+__all__ = ["ContractError", "DatasetError"]
 
 
 class ContractError(AionodeError, ValueError):
@@ -21,3 +21,19 @@ class ContractError(AionodeError, ValueError):
         self.where = where
         self.problem = problem
         super().__init__(": ".join(filter(None, (f"contract {path}", where, problem))))
+
+
+class DatasetError(AionodeError, ValueError):
+    """A data set cannot be made of a recording, or is not what its format demands.
+
+    Attributes:
+        path: The bag, the data set or the file in it.
+        problem: What was found.
+        remedy: What to do next; empty if unknown.
+    """
+
+    def __init__(self, path: str, problem: str, remedy: str = "") -> None:
+        self.path = path
+        self.problem = problem
+        self.remedy = remedy
+        super().__init__(f"data set {path}: {problem}" + (f"; {remedy}" if remedy else ""))

@@ -14,6 +14,8 @@ from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.learn._actor import Actor, ActorStats
+    from aionode.learn._dataset import check_dataset
+    from aionode.learn._export import Exported, Limits, export
     from aionode.learn._observer import Observations, Seen
     from aionode.learn.contract import Action, Contract, Feature, Observation
 
@@ -22,10 +24,14 @@ __all__ = [
     "Actor",
     "ActorStats",
     "Contract",
+    "Exported",
     "Feature",
+    "Limits",
     "Observation",
     "Observations",
     "Seen",
+    "check_dataset",
+    "export",
 ]
 
 PLACES = {
@@ -33,10 +39,14 @@ PLACES = {
     "Actor": "_actor",
     "ActorStats": "_actor",
     "Contract": "contract",
+    "Exported": "_export",
     "Feature": "contract",
+    "Limits": "_export",
     "Observation": "contract",
     "Observations": "_observer",
     "Seen": "_observer",
+    "check_dataset": "_dataset",
+    "export": "_export",
 }
 """The module of each public name, imported on first use."""
 

@@ -36,7 +36,16 @@ MOST_NUMBERS: Final = 10_000
 FEATURE: Final = re.compile(r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*")
 """What a feature's name may be; it becomes a folder and a column."""
 
-OWN: Final = ("timestamp", "frame_index", "episode_index", "index", "task_index", "task")
+OWN: Final = (
+    "age",
+    "episode_index",
+    "frame_index",
+    "index",
+    "stamp",
+    "task",
+    "task_index",
+    "timestamp",
+)
 """Columns that every data set has, besides the features."""
 
 

@@ -181,7 +181,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def to_dict(self) -> dict[str, Any]:
         """Return the plain values that `from_dict` takes."""
-        given: dict[str, Any] = msgspec.to_builtins(self)
+        given: dict[str, Any] = listed(msgspec.to_builtins(self))
         for entry in (*given["observations"], *given["actions"]):
             for key in [key for key, value in entry.items() if value in ((), [], "", None, {}, 0)]:
                 del entry[key]
@@ -267,6 +267,13 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             return [(entries[0], values)]
         ends = np.cumsum([each.shape[0] for each in entries])[:-1]
         return list(zip(entries, np.split(np.asarray(values), ends), strict=True))
+
+
+def listed(value: Any) -> Any:
+    """Return plain values with lists for tuples, as files have them."""
+    if isinstance(value, dict):
+        return {key: listed(each) for key, each in value.items()}
+    return [listed(each) for each in value] if isinstance(value, list | tuple) else value
 
 
 def feature_of(entries: list[Observation | Action]) -> Feature:

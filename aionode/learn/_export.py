@@ -1,0 +1,303 @@
+"""From recorded episodes to a data set of LeRobot: `export`."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import multiprocessing
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode import bag
+from aionode.errors import DatasetError
+from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
+from aionode.learn._episode import PART, Job, contract_in, run
+from aionode.learn._report import Limits, counted, over, text_of
+from aionode.learn.contract import Contract
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+__all__ = ["Exported", "Limits", "export"]
+
+PARTS: Final = ".parts"
+"""The folder with what is exported so far, from which an export goes on."""
+
+REPORT: Final = "meta/report.json"
+
+TOLD_SEC: Final = 0.2
+"""How often processes are asked for their progress."""
+
+TOLD_MESSAGES: Final = 100
+"""After how many messages a process tells its progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """A data set that was exported.
+
+    Attributes:
+        path: Its folder.
+        episodes: How many episodes it has.
+        rows: How many rows.
+        reports: What became of the messages of each bag, as numbers.
+        problems: What is over the limits, by bag.
+        fps: The frames of a second.
+        limits: The limits.
+    """
+
+    path: str
+    episodes: int
+    rows: int
+    reports: list[dict[str, Any]]
+    problems: dict[str, list[str]]
+    fps: int
+    limits: Limits
+
+    @property
+    def text(self) -> str:
+        """The report in plain words."""
+        lines = [text_of(report, self.limits, self.fps) for report in self.reports]
+        bad = f"; over the limits: {counted(len(self.problems), 'bag')}" if self.problems else ""
+        whole = f"{self.path}: {counted(self.episodes, 'episode')}, {self.rows} rows"
+        whole += f" at {self.fps} fps{bad}"
+        return "\n".join([*lines, whole])
+
+
+def export(
+    out: str | PathLike[str],
+    bags: Sequence[str | PathLike[str]],
+    *,
+    contract: Contract | None = None,
+    task: str = "",
+    codec: str = "h264",
+    jobs: int = 0,
+    limits: Limits | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Exported:
+    """Convert episodes to a data set of LeRobot, format v3.0.
+
+    Each picture of the contract's reference is a row, and everything else is as of its time. An
+    export that was interrupted goes on with the episodes that are missing, if it is called again
+    with the same arguments.
+
+    Args:
+        out: The folder of the data set.
+        bags: The bags of the episodes, in order; a folder of bags stands for those in it.
+        contract: The contract; by default, that of the recording.
+        task: The task of all episodes; by default, that of each recording.
+        codec: ``h264``, or ``av1``: smaller, and three times as much work.
+        jobs: Bags to convert at the same time; 0 for as many as the processors can do.
+        limits: What may be wrong before it counts as a problem.
+        progress: Called with the messages read so far, and all that are to be read.
+
+    Raises:
+        BagError: one of them is no bag (a ValueError).
+        ContractError: a contract is not valid (a ValueError).
+        DatasetError: the folder has a data set, no contract fits, no bag has a row, or the data set
+            cannot be read back (a ValueError).
+    """
+    place = Path(out)
+    if (place / INFO).exists():
+        raise DatasetError(str(out), "it is there already", "give another name, or remove it")
+    paths = [path for each in bags for path in bags_in(Path(each))]
+    found = contract or common_contract(paths)
+    check_sizes(found)
+    cameras = max(sum(1 for each in found.observations if each.image), 1)
+    processors = len(os.sched_getaffinity(0))
+    jobs = jobs or max(processors // cameras, 1)
+    threads = max(processors // (cameras * min(jobs, len(paths) or 1)), 1)
+    planned = [job_of(place, str(path), found, task, codec, threads) for path in paths]
+    parts = list(done(planned, jobs, progress))
+    episodes = [
+        Episode(Path(job.folder), **each)
+        for job, part in zip(planned, parts, strict=True)
+        for each in part["episodes"]
+    ]
+    reports = [part["report"] for part in parts]
+    bounds = limits or Limits()
+    problems = {
+        report["path"]: wrong for report in reports if (wrong := over(report, bounds, found.fps))
+    }
+    if not episodes:
+        first = next(iter(problems.values()), ["no bag is given"])
+        raise DatasetError(str(out), f"no bag has a row: {'; '.join(first)[:1000]}")
+    write_dataset(place, found, episodes, codec)
+    wrong = check_dataset(place)
+    if wrong:
+        (place / INFO).unlink()
+        raise DatasetError(str(out), f"it cannot be read back: {'; '.join(wrong[:5])}")
+    (place / REPORT).write_text(json.dumps(reports, indent=1))
+    shutil.rmtree(place / PARTS)
+    rows = sum(each.rows for each in episodes)
+    return Exported(str(out), len(episodes), rows, reports, problems, found.fps, bounds)
+
+
+def bags_in(path: Path) -> list[Path]:
+    """Return a bag, or the bags in a folder, in the order of their names."""
+    if not path.is_dir() or any(path.glob("*.yaml")) or any(path.glob("*.mcap")):
+        return [path]
+    return [each for each in sorted(path.iterdir()) if any(each.glob("*.mcap"))] or [path]
+
+
+def common_contract(bags: Sequence[Path]) -> Contract:
+    """Return the contract that all bags were recorded with.
+
+    Raises:
+        DatasetError: one has none, or another one (a ValueError).
+    """
+    found: Contract | None = None
+    for path in bags:
+        with bag.open(path) as opened:
+            each = contract_in(opened)
+        if each is None:
+            raise DatasetError(str(path), "it was recorded without a contract", "give --contract")
+        if found is not None and each != found:
+            raise DatasetError(
+                str(path),
+                f"it was recorded with another contract than {bags[0]}",
+                "give the one to use with --contract",
+            )
+        found = each
+    if found is None:
+        raise DatasetError("", "no bag is given")
+    return found
+
+
+def check_sizes(contract: Contract) -> None:
+    """Raise the error for pictures that no video can have.
+
+    Raises:
+        DatasetError: a height or width is odd (a ValueError).
+    """
+    for each in contract.observations:
+        if each.image and each.image != "depth" and (each.height % 2 or each.width % 2):
+            raise DatasetError(
+                each.topic,
+                f"pictures of {each.width} by {each.height} pixels",
+                "videos have an even number of rows and columns: crop them",
+            )
+
+
+def job_of(place: Path, path: str, contract: Contract, task: str, codec: str, threads: int) -> Job:
+    """Return the job for a bag; its folder is named after all that makes a difference to it."""
+    given = contract.to_dict()
+    files = sorted(Path(path).rglob("*")) if Path(path).is_dir() else [Path(path)]
+    marks = [
+        (each.name, each.stat().st_size, each.stat().st_mtime_ns)
+        for each in files
+        if each.is_file()
+    ]
+    words = json.dumps([os.path.realpath(path), given, task, codec, marks], sort_keys=True)
+    name = hashlib.sha256(words.encode()).hexdigest()[:16]
+    return Job(path, given, str(place / PARTS / name), task, codec, threads)
+
+
+def done(
+    planned: list[Job], jobs: int, progress: Callable[[int, int], None] | None
+) -> Iterator[dict[str, Any]]:
+    """Do what is not done yet, and yield the parts of all, in order."""
+    missing = [job for job in planned if read_part(job) is None]
+    whole = sum(map(messages_of, missing)) if progress else 0
+    count = 0
+
+    def tell(read: int) -> None:
+        nonlocal count
+        count += read
+        if progress:
+            progress(min(count, whole), whole)
+
+    if len(missing) > 1 and jobs > 1:
+        run_in_processes(missing, jobs, tell)
+    else:
+        for job in missing:
+            run(job, tell)
+    for job in planned:
+        part = read_part(job)
+        if part is None:
+            raise DatasetError(job.folder, "it was removed while it was written")
+        yield part
+
+
+def read_part(job: Job) -> dict[str, Any] | None:
+    """Return a part that is complete."""
+    try:
+        part: dict[str, Any] = json.loads(Path(job.folder, PART).read_text())
+    except (OSError, ValueError):
+        return None
+    return part
+
+
+def messages_of(job: Job) -> int:
+    """Return how many messages of a bag are to be read: pictures twice."""
+    contract = Contract.from_dict(job.contract)
+    pictures = {each.topic for each in contract.observations if each.image}
+    with bag.open(job.path) as opened:
+        return sum(
+            count * (2 if name in pictures else 1)
+            for name, count in opened.counts.items()
+            if name in contract.topics
+        )
+
+
+def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None]) -> None:
+    """Do several jobs at the same time, each in a process of its own.
+
+    Raises:
+        BagError, ContractError, DatasetError: as `run`; what is done by then stays.
+    """
+    context = multiprocessing.get_context("spawn")
+    told = context.SimpleQueue()
+    with ProcessPoolExecutor(
+        min(jobs, len(missing)), mp_context=context, initializer=tell_by, initargs=(told,)
+    ) as pool:
+        waiting = {pool.submit(run_and_tell, job) for job in missing}
+        try:
+            while waiting:
+                finished, waiting = wait(waiting, TOLD_SEC, FIRST_COMPLETED)
+                while not told.empty():
+                    tell(told.get())
+                for each in finished:
+                    each.result()
+            while not told.empty():
+                tell(told.get())
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+class Told:
+    """Where a process of the pool tells its progress.
+
+    Attributes:
+        queue: Its queue to the main process.
+        count: What it has not told yet.
+    """
+
+    queue: Any = None
+    count = 0
+
+
+def tell_by(queue: Any) -> None:
+    """Set the queue of this process."""
+    Told.queue = queue
+
+
+def run_and_tell(job: Job) -> None:
+    """Do a job in a process of the pool."""
+
+    def tell(read: int) -> None:
+        Told.count += read
+        if Told.count >= TOLD_MESSAGES:
+            flush()
+
+    def flush() -> None:
+        Told.queue.put(Told.count)
+        Told.count = 0
+
+    run(job, tell)
+    flush()

@@ -1,0 +1,116 @@
+"""Reads what a contract needs from a bag: all numbers, and of pictures their times."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, MessageError
+from aionode.learn._alignment import Series
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from aionode.bag import Bag, Record
+    from aionode.learn.contract import Action, Contract, Observation
+
+__all__ = ["records_of", "scanned"]
+
+UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
+"""What a message that does not fit the contract raises."""
+
+STAMPS: Final = (struct.Struct(">iI"), struct.Struct("<iI"))
+"""The time at the start of a message with a header, by the lowest bit of its second byte."""
+
+FIRST_FIELD: Final = 4
+"""Where the first field of a message begins, in its bytes."""
+
+
+class Collected:
+    """The messages of one entry, while they are read."""
+
+    def __init__(self, entry: Observation | Action) -> None:
+        self.entry = entry
+        self.is_image = bool(getattr(entry, "image", None))
+        self.rows: list[tuple[int, int, int]] = []
+        self.values: list[Any] = []
+        self.count = 0
+        self.backwards = 0
+        self.invalid = 0
+        self.problem = ""
+
+    def take(self, record: Record) -> None:
+        """Take a message of the topic."""
+        ordinal, self.count = self.count, self.count + 1
+        try:
+            time = self.time_of(record)
+            if self.rows and time <= self.rows[-1][0]:
+                self.backwards += 1
+                return
+            if not self.is_image:
+                self.values.append(self.entry.value(record.message))
+            elif not self.rows:
+                self.entry.value(record.message)  # is it such a picture at all?
+        except UNREADABLE as error:
+            self.invalid += 1
+            self.problem = self.problem or str(error)
+            return
+        self.rows.append((time, record.time_ns, ordinal))
+
+    def time_of(self, record: Record) -> int:
+        """Return the time of a message; that of a picture is read without the picture."""
+        if not self.entry.is_captured:
+            return record.time_ns
+        if not self.is_image:
+            return self.entry.time_of(record.message, record.time_ns)
+        if len(record.raw) < FIRST_FIELD + 8:
+            raise MessageError(self.entry.type, f"{len(record.raw)} bytes only")
+        sec, nanosec = STAMPS[record.raw[1] & 1].unpack_from(record.raw, FIRST_FIELD)
+        return int(sec) * 1_000_000_000 + int(nanosec) or record.time_ns
+
+    def series(self) -> Series:
+        """Return what was taken."""
+        rows = np.array(self.rows, np.int64).reshape(len(self.rows), 3)
+        columns = 0 if self.is_image else self.entry.shape[0]
+        values = np.array(self.values, np.float64).reshape(len(self.rows), columns)
+        return Series(
+            rows[:, 0], rows[:, 1], values, rows[:, 2], self.backwards, self.invalid, self.problem
+        )
+
+
+def scanned(
+    opened: Bag, contract: Contract, tell: Callable[[int], None]
+) -> tuple[list[Series], list[str]]:
+    """Return the messages of each entry of a contract, and what could not be read of the bag.
+
+    Args:
+        opened: The bag.
+        contract: The contract.
+        tell: Called with the number of messages that were read, to show progress.
+    """
+    collected = [Collected(entry) for entry in contract.entries]
+    by_topic: dict[str, list[Collected]] = {}
+    for each in collected:
+        by_topic.setdefault(each.entry.topic, []).append(each)
+    problems = [
+        f"{name} is {opened.topics[name].type} in the bag, and {typename} in the contract"
+        for name, typename in contract.topics.items()
+        if name in opened.topics and opened.topics[name].type != typename
+    ]
+    for record in records_of(opened, by_topic.keys() & opened.topics.keys(), problems):
+        tell(1)
+        for each in by_topic[record.topic]:
+            each.take(record)
+    return [each.series() for each in collected], problems
+
+
+def records_of(opened: Bag, topics: set[str], problems: list[str]) -> Iterator[Record]:
+    """Yield the records of topics; what is damaged is left out, and noted."""
+    if not topics:
+        return
+    try:
+        yield from opened.read(topics)
+    except BagError as error:
+        problems.append(str(error))

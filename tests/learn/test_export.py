@@ -1,0 +1,314 @@
+"""Data sets from demonstrations: read by a reader that is written from LeRobot's source."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from aionode import image
+from aionode.errors import DatasetError
+from aionode.learn import Limits, check_dataset, export
+from aionode.learn._alignment import Series, aligned
+from tests.support.demonstrations import (
+    HEIGHT,
+    SPEED,
+    START_NS,
+    WIDTH,
+    Timing,
+    angle,
+    column,
+    contract,
+    demonstration,
+)
+from tests.support.lerobot_reader import Reader
+
+CAMERA = "observation.images.camera0"
+
+
+def dataset(tmp_path: Path, *bags: Path, cameras: int = 1, **options: Any) -> Reader:
+    """Export bags, and return their data set."""
+    options.setdefault("contract", contract(cameras))
+    export(tmp_path / "out", bags, jobs=1, **options)
+    return Reader(tmp_path / "out")
+
+
+def shown(pixels: Any) -> int:
+    """Return the column up to which a picture is white."""
+    return int((pixels[HEIGHT // 2, :, 1] > 128).sum())
+
+
+@pytest.mark.parametrize("cameras", [1, 2])
+def test_a_reader_like_lerobots_reads_all_rows(tmp_path: Path, cameras: int) -> None:
+    """With pictures, tasks and numbers of the right types, in several episodes."""
+    timings = [Timing(30, late_sec=0.008), Timing(15, phase_sec=0.01)][:cameras]
+    wide = contract(cameras, observations=[
+        each | {"max_age": 0.1} for each in contract(cameras).to_dict()["observations"]
+    ])  # fmt: skip
+    bags = [
+        demonstration(tmp_path / f"run{number}", cameras=timings, seed=number, length_sec=1)
+        for number in range(3)
+    ]
+    read = dataset(tmp_path, *bags, cameras=cameras, contract=wide)
+    assert len(read) == len(read.rows) > 80
+    assert len(read.episodes) == 3
+    for index in range(0, len(read), 7):
+        row = read[index]
+        assert row["task"] == "turn the joint"
+        assert all(row[key].shape == (HEIGHT, WIDTH, 3) for key in read.cameras)
+        assert abs(shown(row[CAMERA]) - column(row["observation.state"][0])) <= 1
+
+
+def test_times_are_exact_and_true_stamps_are_kept(tmp_path: Path) -> None:
+    """Readers compute times from indexes; when it really was is a feature of its own."""
+    bag = demonstration(tmp_path / "run", cameras=[Timing(30, jitter_sec=0.004)])
+    read = dataset(tmp_path, bag)
+    for row in read.rows:
+        assert row["timestamp"] == np.float32(row["frame_index"] / 30)
+    assert 0 <= read.rows[0]["stamp"] - START_NS / 1e9 < 0.1
+    assert read.info["features"]["age"]["names"] == ["/camera0", "/joint_states", "/command"]
+    assert all(0 <= age <= 0.05 for row in read.rows for age in row["age"])
+
+
+def test_an_action_answers_the_picture_of_its_row(tmp_path: Path) -> None:
+    """It is the command as of one period later: that of the row itself was before the picture."""
+    read = dataset(tmp_path, demonstration(tmp_path / "run"))
+    for row in read.rows:
+        commanded_sec = row["stamp"] - START_NS / 1e9 + 1 / 30 - row["age"][2]
+        assert row["action"] == pytest.approx(angle(commanded_sec), abs=1e-3)
+
+
+def test_a_gap_ends_the_episode(tmp_path: Path) -> None:
+    """The rows before and after it are not 1/30 s apart."""
+    bag = demonstration(tmp_path / "run", cameras=[Timing(30, gaps=[(0.5, 0.8)])])
+    read = dataset(tmp_path, bag)
+    assert [each["length"] for each in read.episodes] == [
+        14,
+        35,
+    ]  # the first picture is before any joint
+    assert check_dataset(tmp_path / "out") == []
+
+
+def test_a_gap_refuses_the_episode_if_the_contract_says_so(tmp_path: Path) -> None:
+    """Then the demonstration is to be repeated."""
+    bag = demonstration(tmp_path / "run", cameras=[Timing(30, gaps=[(0.5, 0.8)])])
+    with pytest.raises(DatasetError, match=r"refused: 1 gap between rows, the longest of 0\.3"):
+        dataset(tmp_path, bag, contract=contract(gap="refuse"))
+
+
+def test_rows_without_fresh_joints_are_dropped_and_told(tmp_path: Path) -> None:
+    """A driver that hung for half a second."""
+    bag = demonstration(tmp_path / "run", joints=Timing(100, gaps=[(1.0, 1.5)]))
+    result = export(tmp_path / "out", [bag], contract=contract(), jobs=1)
+    assert re.search(r"too old for 1\d rows", result.text)
+    assert "of the rows between the first and the last are missing" in result.text
+    assert result.problems
+    assert not export(
+        tmp_path / "lax", [bag], contract=contract(), jobs=1, limits=Limits(dropped=0.5)
+    ).problems
+
+
+def test_a_topic_that_is_missing_is_named(tmp_path: Path) -> None:
+    """Nothing can be made of such a recording."""
+    bag = demonstration(tmp_path / "run", commands=None)
+    with pytest.raises(DatasetError, match="no bag has a row"):
+        dataset(tmp_path, bag)
+
+
+def test_topics_that_arrive_late_are_aligned_by_their_stamps(tmp_path: Path) -> None:
+    """The camera's driver takes 40 ms, the joints' 2 ms."""
+    bag = demonstration(
+        tmp_path / "run",
+        cameras=[Timing(30, late_sec=0.040)],
+        joints=Timing(100, phase_sec=0.003, late_sec=0.002),
+    )
+    read = dataset(tmp_path, bag)
+    for index in range(len(read)):
+        row = read[index]
+        at = angle(row["stamp"] - START_NS / 1e9)
+        assert row["observation.state"][0] == pytest.approx(at, abs=1e-4)
+        assert abs(shown(row[CAMERA]) - column(at)) <= 1
+
+
+def test_a_slow_camera_is_told(tmp_path: Path) -> None:
+    """Its pictures would be played too fast."""
+    bag = demonstration(tmp_path / "run", cameras=[Timing(24)])
+    result = export(tmp_path / "out", [bag], contract=contract(), jobs=1)
+    assert "rows at 24.00 Hz, and fps is 30: they would be played too fast" in result.text
+
+
+def test_a_fast_camera_makes_a_row_of_every_second_picture(tmp_path: Path) -> None:
+    """A contract may ask for fewer frames than the camera has."""
+    bag = demonstration(tmp_path / "run", cameras=[Timing(60, jitter_sec=0.002)])
+    result = export(tmp_path / "out", [bag], contract=contract(), jobs=1)
+    assert result.problems == {}
+    assert 55 <= result.rows <= 60
+
+
+def test_compressed_pictures_are_read(tmp_path: Path) -> None:
+    """As most cameras publish them."""
+    observations = contract().to_dict()["observations"]
+    observations[0]["type"] = "sensor_msgs/msg/CompressedImage"
+    bag = demonstration(tmp_path / "run", wrap=lambda each: image.compress(each, "png"))
+    read = dataset(tmp_path, bag, contract=contract(observations=observations))
+    row = read[30]
+    assert abs(shown(row[CAMERA]) - column(row["observation.state"][0])) <= 1
+
+
+def test_depths_survive_to_a_hundredth(tmp_path: Path) -> None:
+    """In LeRobot's scale of 12 bits, without losses by the codec."""
+    observations = contract().to_dict()["observations"]
+    observations[0] |= {"image": "depth", "feature": "observation.images.depth"}
+
+    def depths(sec: float) -> Any:
+        return np.full((HEIGHT, WIDTH, 3), 0, np.uint8) + np.uint8(sec * 10)
+
+    def as_depth(shown: Any) -> Any:
+        metres = image.to_numpy(shown)[..., 0].astype(np.float32) / 10 + 0.5
+        return image.from_numpy(metres, "32FC1", header=shown.header)
+
+    bag = demonstration(tmp_path / "run", draw=depths, wrap=as_depth)
+    read = dataset(tmp_path, bag, contract=contract(observations=observations))
+    info = read.info["features"]["observation.images.depth"]
+    assert info["shape"] == [HEIGHT, WIDTH, 1]
+    assert info["info"]["is_depth_map"]
+    low, high = np.log(3.51), np.log(13.5)
+    for index in range(len(read)):
+        row = read[index]
+        metres = np.exp(row["observation.images.depth"][0, 0] / 4095 * (high - low) + low) - 3.5
+        sec = row["stamp"] - START_NS / 1e9
+        assert metres == pytest.approx(int(sec * 10 + 1e-6) / 10 + 0.5, abs=0.11)
+    assert read.stats["observation.images.depth"]["min"] == [[[pytest.approx(0.5, abs=0.01)]]]
+
+
+def test_av1_is_an_option(tmp_path: Path) -> None:
+    """LeRobot's own default: smaller files for more work."""
+    read = dataset(tmp_path, demonstration(tmp_path / "run", length_sec=1), codec="av1")
+    assert read.info["features"][CAMERA]["info"]["video.codec"] == "av1"
+    assert abs(shown(read[20][CAMERA]) - column(read[20]["observation.state"][0])) <= 1
+
+
+def test_an_export_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
+    """Hours of encoding are not done again."""
+    bags = [demonstration(tmp_path / f"run{number}", length_sec=0.5) for number in range(2)]
+    gone = tmp_path / "gone"
+    shutil.move(bags[1], gone)
+    with pytest.raises(FileNotFoundError):
+        export(tmp_path / "out", bags, contract=contract(), jobs=1)
+    written = next((tmp_path / "out").rglob("*.mp4"))
+    before = written.stat().st_ino
+    shutil.move(gone, bags[1])
+    read = dataset(tmp_path, *bags)
+    assert len(read.episodes) == 2
+    first = tmp_path / "out/videos" / CAMERA / "chunk-000/file-000.mp4"
+    assert first.stat().st_ino == before
+
+
+def test_a_data_set_is_not_overwritten(tmp_path: Path) -> None:
+    """It may be the only one."""
+    bag = demonstration(tmp_path / "run", length_sec=0.5)
+    dataset(tmp_path, bag)
+    with pytest.raises(DatasetError, match="it is there already; give another name"):
+        dataset(tmp_path, bag)
+
+
+def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
+    """With progress that ends at the whole."""
+    bags = [
+        demonstration(tmp_path / f"run{number}", length_sec=0.5, recorded_with=contract())
+        for number in range(2)
+    ]
+    told: list[tuple[int, int]] = []
+    result = export(tmp_path / "out", bags, jobs=2, progress=lambda *each: told.append(each))
+    assert result.episodes == 2
+    assert told[-1][0] <= told[-1][1]
+
+
+def test_a_check_finds_a_video_with_a_frame_too_few(tmp_path: Path) -> None:
+    """LeRobot does not: it would show each later picture one row early."""
+    bags = [
+        demonstration(tmp_path / f"run{number}", length_sec=0.5 + number / 30)
+        for number in range(2)
+    ]
+    dataset(tmp_path, *bags)
+    folder = tmp_path / "out/videos" / CAMERA / "chunk-000"
+    shutil.copy(folder / "file-000.mp4", folder / "file-001.mp4")
+    assert "13 frames for 14 rows" in check_dataset(tmp_path / "out")[0]
+
+
+def test_a_bag_of_another_contract_is_refused(tmp_path: Path) -> None:
+    """Their columns differ."""
+    bags = [
+        demonstration(tmp_path / "a", length_sec=0.5, recorded_with=contract()),
+        demonstration(tmp_path / "b", length_sec=0.5, recorded_with=contract(fps=15)),
+    ]
+    with pytest.raises(DatasetError, match="recorded with another contract"):
+        export(tmp_path / "out", bags)
+
+
+def test_an_export_is_checked(tmp_path: Path) -> None:
+    """What became of the messages, as numbers and in plain words."""
+    bags = [demonstration(tmp_path / "run", length_sec=1)]
+    exported = export(tmp_path / "out", bags, contract=contract(), task="turn it", jobs=1)
+    assert exported.problems == {}, exported.text
+    assert check_dataset(tmp_path / "out") == []
+
+
+# Alignment
+
+
+def series(times_sec: Any, values: Any = None) -> Series:
+    """Return messages at times."""
+    times = np.unique(np.round(np.asarray(times_sec) * 1e9).astype(np.int64))
+    columns = np.zeros((len(times), 0)) if values is None else values(times / 1e9)
+    return Series(times, times, columns, np.arange(len(times)))
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    phase=st.floats(0, 0.05),
+    camera_hz=st.floats(28, 32),
+    joints_hz=st.floats(10, 500),
+    jitter=st.floats(0, 0.01),
+    late=st.floats(0, 0.1),
+    hold=st.booleans(),
+    seed=st.integers(0, 1000),
+)
+def test_a_picture_and_its_joint_agree_within_the_age_that_is_told(
+    phase: float,
+    camera_hz: float,
+    joints_hz: float,
+    jitter: float,
+    late: float,
+    hold: bool,
+    seed: int,
+) -> None:
+    """For any phase, rate and jitter: the marker shows the joint at the picture's time."""
+    observations = contract().to_dict()["observations"]
+    observations[1] |= {"resample": "hold"} if hold else {}
+    made = contract(observations=[each | {"max_age": 0.2} for each in observations])
+
+    def joint(times: Any) -> Any:
+        angles = np.vectorize(angle)(times)
+        return np.stack([angles, angles], axis=1)
+
+    rows = aligned(
+        made,
+        [
+            series(Timing(camera_hz, phase, jitter).times(3, seed)),
+            series(Timing(joints_hz, late, jitter).times(3, seed + 1), joint),
+            series(Timing(30).times(4), lambda times: times[:, None]),
+        ],
+    )
+    for time, age, value in zip(rows.times, rows.ages[1], rows.values[1], strict=True):
+        assert 0 <= age <= 0.2 + 1e-6
+        assert abs(value[0] - angle(time / 1e9)) <= SPEED * age + 1e-9
+    steps = np.diff(rows.times) / 1e9
+    inside = np.delete(steps, [start - 1 for start in rows.starts if start])
+    assert inside.max(initial=0) <= 1.5 / 30 + 1e-9
