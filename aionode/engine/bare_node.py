@@ -18,6 +18,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import qos
+from aionode.engine.causes import Party
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.local import LocalWriter
 from aionode.errors import EntityDestroyedError, QueueFullError
@@ -83,6 +84,8 @@ class BarePublisher(BareEndpoint):
     def __init__(self, node: BareNode, endpoint: EndpointInfo, writers: Sequence[Writer]) -> None:
         super().__init__(node, endpoint, writers)
         self.published = 0
+        self._causes = node.context.causes
+        self._party = Party.of(endpoint)
         self._writers = writers
         self._here = [writer for writer in writers if isinstance(writer, LocalWriter)]
         self._elsewhere = [writer for writer in writers if not isinstance(writer, LocalWriter)]
@@ -124,6 +127,8 @@ class BarePublisher(BareEndpoint):
                 raise QueueFullError(self.endpoint.name, KEEP_ALL_DEPTH)
         self.published += 1
         sample_info = SampleInfo(self.endpoint.gid, self.published, source_ns)
+        if self._causes is not None:
+            self._causes.note("message", self._party, self.published)
         for writer in self._here:
             if writer.active:
                 writer.write(msg, self.published, source_ns)

@@ -251,10 +251,19 @@ class CauseLog:
         self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MOST_SENDERS)
 
     def note(
-        self, kind: Kind, party: Party, sequence: int, *, gid: bytes = b"", goal: bytes = b""
+        self,
+        kind: Kind,
+        party: Party,
+        sequence: int,
+        *,
+        gid: bytes = b"",
+        goal: bytes = b"",
+        causes: tuple[Run, ...] | None = None,
     ) -> None:
-        """Add something that is being sent."""
-        sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), acting_for(), goal)
+        """Add something that is being sent, by the current task unless its causes are given."""
+        if causes is None:
+            causes = acting_for()
+        sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), causes, goal)
         self.sent.append(sent)
         self.sent_counted += 1
         self._last.put((kind, party.gid, party.name), sent)

@@ -21,6 +21,9 @@ class ExecutorLike(Protocol):
     def wake(self) -> None:
         """Wake it to check again what is ready."""
 
+    def get_nodes(self) -> list[Any]:
+        """Return the nodes that it serves."""
+
 
 class NodeLike(Protocol):
     """A node, as seen by executors and its own services."""

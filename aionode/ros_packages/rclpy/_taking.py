@@ -11,6 +11,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import MachineTime
+from rclpy._impl.causes import noting, party_of, timer_party
 from rclpy._impl.errors import InvalidHandle, TimerCancelledError
 from rclpy._impl.wait_set import WaitSet
 from rclpy.subscription import Subscription
@@ -26,6 +28,8 @@ __all__ = ["Ready", "Take", "await_or_execute", "find_ready", "wait_set_of"]
 
 Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
 Ready = tuple["Entity", "NodeLike", Take]
+
+now_ns = MachineTime().system_ns
 
 MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
 
@@ -109,9 +113,16 @@ def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
     if callback is None:
         return None
     name = timer.info_argument(callback)
-    if name is None:
+    if name is not None:
+        callback = partial(callback, **{name: timer.info(called)})
+    log = timer.handle.causes
+    if log is None:
         return partial(run, callback)
-    return partial(run, partial(callback, **{name: timer.info(called)}))
+    owners = (
+        node.get_fully_qualified_name() for node in executor.get_nodes() if timer in node._timers
+    )
+    party = timer_party(timer, next(owners, ""))
+    return noting(partial(run, callback), log, party, "timer", (party.gid, 0))
 
 
 def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
@@ -123,8 +134,15 @@ def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[],
     if taken is None:
         return None
     if subscription._callback_type is MESSAGE_ONLY:
-        return partial(run, subscription._callback, taken[0])
-    return partial(run, subscription._callback, taken[0], handle.info_of(taken))
+        call = partial(run, subscription._callback, taken[0])
+    else:
+        call = partial(run, subscription._callback, taken[0], handle.info_of(taken))
+    if handle.causes is None:
+        return call
+    party = party_of(subscription, handle.endpoint, subscription._callback)
+    _, origin, arrived_ns, _ = taken
+    identity = (origin.gid, origin.sequence)
+    return noting(call, handle.causes, party, "message", identity, now_ns() - arrived_ns)
 
 
 def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
@@ -148,6 +166,7 @@ def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None
         return None
 
     def complete() -> None:
+        future._cause = client.handle.take_cause(header.request_id.sequence_number)
         future._set_executor(executor)
         future.set_result(response)
 
@@ -175,7 +194,13 @@ def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | No
         # A program may put its own function in this place, and answer later.
         service.send_response(response, header)
 
-    return answer
+    log = service.handle.causes
+    if log is None:
+        return answer
+    sequence, gid = header.request_id
+    party = party_of(service, service.handle.endpoint, service.callback)
+    waited_ns = now_ns() - header.received_timestamp
+    return noting(answer, log, party, "request", (gid, sequence), waited_ns)
 
 
 def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from aionode.engine.causes import take as take_cause
 from rclpy._entities import ServiceEntity, in_use, wait_until
 from rclpy._impl.destroyable import Wakeup
 from rclpy._impl.services import ClientHandle
@@ -100,6 +101,9 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
                 if not responses:
                     raise TimeoutError
             response: ResponseT = self._handle.receive(sequence, responses[0])
+            cause = self._handle.take_cause(sequence)
+        if cause is not None:
+            take_cause(cause)
         return response
 
     def call_async(self, request: RequestT) -> Future[ResponseT]:

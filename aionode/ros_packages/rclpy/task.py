@@ -10,9 +10,13 @@ import weakref
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from aionode.engine.causes import take
+from rclpy._impl.causes import caused_by
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Generator
 
+    from aionode.engine.causes import Run
     from rclpy._protocols import ExecutorLike
 
 __all__ = ["Future", "FutureState", "Task"]
@@ -55,6 +59,7 @@ class Future(Generic[T]):
         # it. A signal handler may complete the future while this thread holds the lock.
         self._lock = threading.RLock()
         self._executor: weakref.ref[ExecutorLike] | None = None
+        self._cause: Run | None = None  # the response that it has brought, where that is kept
         self._set_executor(executor)
 
     def __del__(self) -> None:
@@ -70,6 +75,8 @@ class Future(Generic[T]):
             if task is not None:
                 task._awaited = self
             yield  # other drivers of coroutines, such as asyncio, resume it at once
+        if self._cause is not None:
+            take(self._cause)
         return self.result()
 
     def _pending(self) -> bool:
@@ -131,10 +138,10 @@ class Future(Generic[T]):
             waker()
         for callback in callbacks:
             if executor is not None:
-                executor.create_task(callback, self)
+                executor.create_task(caused_by(callback, self._cause), self)
                 continue
             try:
-                callback(self)
+                caused_by(callback, self._cause)(self)
             except Exception as error:  # noqa: BLE001  # others have to be called, too
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 

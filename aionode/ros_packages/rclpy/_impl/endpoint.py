@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.engine.bare_node import BareEndpoint
+    from aionode.engine.causes import CauseLog
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
     from rclpy._impl.node import NodeHandle
@@ -33,6 +34,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
 
     Attributes:
         io: The thread that works for it.
+        causes: What its callbacks work on is noted there; None if it is not.
         bare: The endpoint in the core; used in that thread only.
         name: The full name of its topic or service.
         profile: Its profile, with policies that the endpoint resolves.
@@ -49,6 +51,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
         super().__init__(node.signal)
         self._node = node
         self.io = node.io
+        self.causes: CauseLog | None = node.bare.context.causes
         node.context_handle.refuse_after_shutdown(failure)
         self.name = node.resolve(name, is_service=is_service)
         self.profile: QoSProfile = profile_of(qos_profile)

@@ -8,8 +8,10 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode.clock import MachineTime
+from aionode._process.recent import Recent
+from aionode.clock import MachineTime, perf_ns
 from aionode.engine.bare_node import BareClient, BareEndpoint
+from aionode.engine.causes import Party, Run, acting_for
 from aionode.engine.reports.limits import heavy_text
 from aionode.engine.rules.service_events import (
     REQUEST_RECEIVED,
@@ -186,6 +188,9 @@ class ServiceHandle(CallHandle[BareEndpoint]):
         request = self._taken.pop(request_id, None)
         if request is None:
             return
+        if self.causes is not None:
+            sequence, gid = request_id
+            self.causes.note("response", Party.of(self.endpoint), sequence, gid=gid)
         self.io.send(partial(request.reply, self._support.wire_type.Response(data)))
         self._introspection.tell(
             RESPONSE_SENT, request_id.writer_guid, request_id.sequence_number, response
@@ -234,6 +239,8 @@ class ClientHandle(CallHandle[BareClient]):
         self._replies = Replies(node.responses)
         self._calls: dict[int, Any] = {}  # used by the thread of the loop, or its borrower
         self._sequence = 0  # changed under the lock of the client
+        # Where causes are kept: the numbers by which others know the requests that are pending.
+        self._numbers: Recent[int, int] = Recent(MOST_REQUESTS)
         self._announce(node.bare.create_client, self._support.wire_type)
 
     def ready(self) -> bool:
@@ -254,10 +261,19 @@ class ClientHandle(CallHandle[BareClient]):
         if on_response is not None:
             self._replies.blocked[sequence] = on_response
         self._introspection.tell(REQUEST_SENT, self.endpoint.gid, sequence, request)
-        self.io.send(partial(self._send, sequence, self._support.wire_type.Request(data), now_ns()))
+        wired, causes = self._support.wire_type.Request(data), acting_for()
+        self.io.send(partial(self._send, sequence, wired, now_ns(), causes))
         return sequence
 
-    def _send(self, sequence: int, request: Any, source_ns: int) -> None:
+    def take_cause(self, sequence: int) -> Run | None:
+        """Return what has taken the response of a request; None if causes are not kept."""
+        number = self._numbers.pop(sequence, None)
+        if number is None:
+            return None
+        at_ns = perf_ns()
+        return Run(Party.of(self.endpoint), "response", self.endpoint.gid, number, at_ns, at_ns)
+
+    def _send(self, sequence: int, request: Any, source_ns: int, causes: tuple[Run, ...]) -> None:
         replies, calls = self._replies, self._calls
 
         def reply(response: Any) -> None:
@@ -271,6 +287,10 @@ class ClientHandle(CallHandle[BareClient]):
                 logger.warning("%s: %s", self.name, error)
 
         if self.bare.servers:
+            if self.causes is not None:
+                number = self.bare.calls + 1
+                self._numbers.put(sequence, number)
+                self.causes.note("request", Party.of(self.endpoint), number, causes=causes)
             call = self.bare.send(request, source_ns, reply, fail)
             if call.open:
                 calls[sequence] = call

@@ -10,6 +10,7 @@ from rclpy._impl.destroyable import Destroyable
 from rclpy._impl.errors import RCLError, TimerCancelledError
 
 if TYPE_CHECKING:
+    from aionode.engine.causes import CauseLog
     from rclpy._impl.context import ContextHandle
 
 __all__ = ["ClockHandle", "GuardConditionHandle", "TimerHandle"]
@@ -65,6 +66,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         Destroyable.__init__(self)
         refuse_negative(period_ns)
         context.refuse_if_over("timer")
+        self.causes: CauseLog | None = context.io.context.causes
         ClockedSchedule.__init__(
             self,
             clock,
