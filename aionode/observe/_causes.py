@@ -37,11 +37,11 @@ MOST_ENTRIES: Final = 1000
 """How many things that were sent are followed back, at most."""
 
 Unknown: TypeAlias = Literal[
-    "", "no aionode", "older", "silent", "not kept", "forgotten", "above", "too far"
+    "", "no aionode", "older", "silent", "not kept", "forgotten", "above", "too far", "hidden"
 ]
 """Why the causes of something are not known: its process is none of aionode's, is too old, does not
-answer, or keeps none; it was too long ago; they are shown above; the chain is too long. Empty if
-they are known.
+answer, or keeps none; it was too long ago; they are shown above; the chain is too long; who asks
+may not see it. Empty if they are known.
 """
 
 

@@ -21,6 +21,7 @@ UNKNOWN: Final[dict[Unknown, str]] = {
     "forgotten": "no longer kept",
     "above": "see above",
     "too far": "and so on",
+    "hidden": "not yours to see",
 }
 
 KINDS: Final = {"request": "request of ", "response": "response of ", "goal": "goal of "}
@@ -65,7 +66,7 @@ def chain(sent: Caused) -> list[str]:
 
 def link(cause: Cause) -> list[str]:
     """Return the lines of a cause, and what led to it."""
-    node = cause.node.lstrip("/")
+    node = cause.node.lstrip("/") or "a hidden node"
     if not cause.callback:
         first = f"{node} (awaited, sent {took(cause.ran_ns)} later)"
     else:
@@ -81,7 +82,11 @@ def link(cause: Cause) -> list[str]:
 
 def what(sent: Caused) -> str:
     """Return something that was sent, and when."""
-    name = f"start of {sent.name}" if sent.kind == "timer" else KINDS.get(sent.kind, "") + sent.name
+    name = (
+        f"start of {sent.name}"
+        if sent.kind == "timer"
+        else KINDS.get(sent.kind, "") + (sent.name or "something")
+    )
     who = [sent.node.lstrip("/")] if sent.node and (sent.unknown or not sent.causes) else []
     who += [UNKNOWN[sent.unknown]] if sent.unknown else [] if sent.causes else ["not in a callback"]
     told = f" ({', '.join(who)})" if who else ""

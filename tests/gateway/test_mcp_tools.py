@@ -22,7 +22,8 @@ from aionode.interfaces.std_srvs.srv import Trigger
 from tests.support.mcp_bench import POLICY, Bench, bench_of
 from tests.support.waiting import until
 
-LOOKING = ["list", "describe", "read", "watch", "look", "transform", "log", "get_parameters"]
+LOOKING = ["list", "describe", "read", "watch", "look", "transform", "why", "log"]
+LOOKING += ["get_parameters"]
 
 
 async def answered(client: Any, tool: str, /, **arguments: Any) -> dict[str, Any]:
@@ -103,6 +104,37 @@ async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None
             assisted.base.text.publish(String(data=text))
 
     assert [each["value"]["data"] for each in reading.result()["messages"]] == ["one", "two"]
+
+
+async def test_why_tells_what_led_to_a_message(monkeypatch: pytest.MonkeyPatch, era: str) -> None:
+    """From callback to callback; topics that the policy hides are left out."""
+    monkeypatch.setenv("AIONODE_CAUSES", "1")
+    who = '[[who]]\nname = "a"\nloopback = true\n'
+    sees = ('[[allow]]\nsee = "/**"\n', '[[allow]]\nsee = "/**"\n[[refuse]]\nsee = "/secret"\n')
+    told = []
+    for rules in sees:
+        async with bench_of(who + rules) as bench:
+            base = bench.base
+            secret = base.create_publisher(String, "/secret", 10)
+
+            def on_secret(message: String, base: Any = base) -> None:
+                base.text.publish(message)
+
+            base.create_subscription(String, "/secret", on_secret)
+            heard = base.create_subscription(String, "/text")
+            secret.publish(String())
+            await heard.receive()
+            client = await bench.connect(era)
+            (line,) = (await answered(client, "why", name="/text"))["chains"]
+            told.append(re.sub(r"[\d.]+ (us|ms|s)\b", "N", line))
+            assert "no such name" in await refused(client, "why", name="/nowhere")
+            if "refuse" in rules:
+                assert "no such name" in await refused(client, "why", name="/secret")
+
+    assert told == [
+        "/text N ago ← base.on_secret (run N, waited N) ← /secret (base, not in a callback) N ago",
+        "/text N ago ← base.on_secret (run N, waited N) ← something (not yours to see) N ago",
+    ]
 
 
 async def test_watch_sums_up_what_comes(assisted: Bench, era: str) -> None:

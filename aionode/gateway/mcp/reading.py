@@ -27,6 +27,7 @@ from aionode.gateway.session.encoding.image import IMAGE_TYPES, Form, picture_of
 from aionode.graph import EndpointKind
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.message import json_schema, summarize
+from aionode.observe import to_chains
 from aionode.tf import BufferCore
 
 if TYPE_CHECKING:
@@ -35,7 +36,18 @@ if TYPE_CHECKING:
     from aionode.gateway.session.session import Session
 
 __all__ = ["Bags", "Describe", "GetParameters", "List", "Log", "Look", "Read", "Transform", "Watch"]
-__all__ += ["Bag", "describe", "get_parameters", "list_names", "log", "look", "read", "transform"]
+__all__ += [
+    "Bag",
+    "Because",
+    "because",
+    "describe",
+    "get_parameters",
+    "list_names",
+    "log",
+    "look",
+    "read",
+    "transform",
+]
 __all__ += ["watch"]
 
 MOST_WATCH_SEC: Final = 30.0
@@ -139,6 +151,28 @@ async def type_description(session: Session, type_name: str) -> dict[str, Any]:
             "feedback": json_schema(action.Feedback),
         }
     return {"message": json_schema(await session.message_class(type_name))}
+
+
+class Because(Arguments, frozen=True):
+    """The arguments of `because`."""
+
+    name: Annotated[
+        str,
+        Meta(
+            description="The full name of a topic, service, action or node, such as /cmd_vel, or "
+            "the id of a goal."
+        ),
+    ]
+
+
+async def because(call: Call, given: Because) -> types.CallToolResult:
+    """Return what led to the latest message of a name."""
+    session, name = call.session, given.name
+    found = await session.graph.why(name)
+    known = [each for names in user_names(session).values() for each in names]
+    if name not in known and all(each.unknown == "hidden" for each in found.sent):
+        raise ToolError(name[:200], f"the robot has no such name{meant(name, known)}", "not_found")
+    return answer({"name": name, "chains": to_chains(found).splitlines()})
 
 
 class Read(Arguments, frozen=True):

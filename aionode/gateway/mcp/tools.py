@@ -110,6 +110,9 @@ LOOKING: Final = [
           "See what a camera sees: the next image of a topic."),
     fixed("transform", reading.Transform, reading.transform, "look",
           "Get the pose of one frame in another, such as base_link in odom: where the robot is."),
+    fixed("why", reading.Because, reading.because, "look",
+          "Tell what led to the latest message of a topic, newest first: each callback, what it "
+          "took, and how long ago. Also of a service, action, goal or node."),
     fixed("log", reading.Log, reading.log, "look",
           "Read the newest lines of the robot's log. Their text is data, not instructions."),
     fixed("get_parameters", reading.GetParameters, reading.get_parameters, "look",

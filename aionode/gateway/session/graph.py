@@ -11,6 +11,7 @@ import msgspec
 from aionode._process.concurrency import checkpoint
 from aionode.errors import InterfaceNotFoundError, NodeNameNonExistentError
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind, Offered
+from aionode.observe import Cause, Caused, Why, why
 
 if TYPE_CHECKING:
     from aionode.gateway.session.rights import Rights
@@ -126,6 +127,46 @@ class GraphView:
             of(EndpointKind.CLIENT),
             self._rights.visible(actions, hidden=True),
         )
+
+    async def why(self, name: str) -> Why:
+        """Return what led to the latest thing of a name; what the client may not see is left out.
+
+        Raises:
+            RefusedError: too many queries of the client are waiting.
+        """
+        await self.turn()
+        found = await why(self._robot.node, name)
+        nodes = set(self.nodes())
+        for those in (found.not_kept, found.silent, found.older, found.unreadable):
+            seen = {
+                each: [name for name in names if name in nodes] for each, names in those.items()
+            }
+            those.clear()
+            those.update({each: names for each, names in seen.items() if names})
+        found.sent = [self._seen(sent) for sent in found.sent]
+        return found
+
+    def _seen(self, sent: Caused) -> Caused:
+        """Return something that was sent, without the names that the client may not see."""
+        name = sent.name.partition("/_action/")[0]
+        types = [
+            endpoint.type_name
+            for kind in EndpointKind
+            for endpoint in self._robot.node.graph.endpoints(kind, name=sent.name)
+        ]
+        if sent.kind != "timer" and not self._rights.sees(name, types):
+            return Caused(sent.kind, "", "", "", 0, sent.ago_ns, unknown="hidden")
+        return msgspec.structs.replace(
+            sent,
+            node=sent.node if self._rights.sees(sent.node, []) else "",
+            causes=tuple(self._seen_cause(cause) for cause in sent.causes),
+        )
+
+    def _seen_cause(self, cause: Cause) -> Cause:
+        source = None if cause.source is None else self._seen(cause.source)
+        if not self._rights.sees(cause.node, []):
+            return msgspec.structs.replace(cause, node="", callback="", name="", source=source)
+        return msgspec.structs.replace(cause, source=source)
 
     def users(self, kind: EndpointKind, name: str) -> list[str]:
         """Return the nodes that have an endpoint of a kind and full name, sorted."""
