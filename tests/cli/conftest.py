@@ -1,4 +1,4 @@
-"""A hidden node as the command line makes it, in a context without network, and what it prints."""
+"""A hidden node like that of the command line, in a context without network, and its output."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Running = Callable[[Coroutine[Any, Any, Any]], AbstractAsyncContextManager[async
 
 
 class Screen:
-    """What a command has printed."""
+    """The output of a command."""
 
     def __init__(self) -> None:
         self.stdout = io.StringIO()
@@ -45,7 +45,7 @@ class Screen:
 
 @pytest.fixture(autouse=True)
 def quick_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The doctor looks twice at what processes do, a second apart; few tests are about that."""
+    """The output of the command under test."""
     monkeypatch.setattr("aionode.cli._nouns.doctor.work.LOOKING_S", 0.1)
 
 
@@ -57,7 +57,7 @@ def screen() -> Screen:
 
 @pytest.fixture
 async def tool(node_factory: Callable[..., Node]) -> Node:
-    """The node of a command."""
+    """Run a verb beside the test, and cancel it at the end of the block."""
     return node_factory("_aionode_cli_1", enable_rosout=False, start_parameter_services=False)
 
 

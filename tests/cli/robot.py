@@ -18,7 +18,7 @@ __all__ = ["AddServer", "Camera", "FibServer", "ParamNode", "Talker"]
 
 
 class Words(Message, typename="robot_msgs/msg/Words"):
-    """A type that exists as a Python class only."""
+    """A type that exists only as a Python class."""
 
     text: str = ""
 
@@ -30,7 +30,7 @@ class Talker(Node):
         super().__init__("talker")
         chatter = self.create_publisher(String, "/chatter", 10)
         stamped = self.create_publisher(TwistStamped, "/stamped", 10)
-        self.create_publisher(Words, "/_words", 10)  # hidden: only its type is asked for
+        self.create_publisher(Words, "/_words", 10)  # hidden: only its type is requested
         self.create_timer(0.05, lambda: chatter.publish(String(data="Hello")))
         self.create_timer(0.05, lambda: stamped.publish(self.stamp()))
 
@@ -66,7 +66,7 @@ class ParamNode(Node):
 
 
 class Camera(LifecycleNode):
-    """A managed node that nobody configures; hidden, as only its transitions are asked for."""
+    """A managed node that nobody configures; hidden, since only its transitions are requested."""
 
     def __init__(self) -> None:
         super().__init__("_camera")

@@ -98,7 +98,7 @@ async def test_json_prints_feedback_and_result(tool: Node, server: Node, screen:
 
 
 async def test_a_rejected_goal_is_reported(tool: Node, server: Node, screen: Any) -> None:
-    """ros2 returns 0; a script would take the goal for done."""
+    """ros2 returns 0, so a script would believe that the goal succeeded."""
     status = await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: 101}", output=screen.output
     )
@@ -151,7 +151,7 @@ async def test_an_interrupted_wait_cancels_the_goal(tool: Node, server: Node, sc
 async def test_a_refused_cancel_is_an_error(
     code: int, tool: Node, node_factory: Callable[..., Node], screen: Any, monkeypatch: Any
 ) -> None:
-    """A server of rclpy answers 0, one of aionode 1; either way the goal goes on."""
+    """A server of rclpy answers 0, one of aionode 1; either way the goal continues."""
     refusing = node_factory("fib_server")
     ActionServer(refusing, Fibonacci, "/fibonacci", execute)
     answer = ClientGoalHandle.cancel

@@ -138,7 +138,7 @@ def test_a_missing_extra_is_one_line_that_says_how_to_install_it(
 def test_a_folder_that_cannot_be_written_is_one_clear_line(
     tmp_path: Path, capsys: Captured
 ) -> None:
-    """Before anything is recorded. Below a file, not even root can make a folder."""
+    """Before anything is recorded. Below a file, not even root can create a folder."""
     (tmp_path / "file").touch()
     assert main(["bag", "record", "--all", "-o", str(tmp_path / "file" / "run")]) == 1
     text = capsys.readouterr().err

@@ -83,7 +83,7 @@ def test_the_options_of_rosbag2_are_taken(tmp_path: Path) -> None:
     [("--storage", "sqlite3", "writes mcap"), ("--compression-mode", "file", "chunks are")],
 )
 def test_what_is_not_written_is_refused(option: str, value: str, text: str) -> None:
-    """Before a robot is recorded in another format than was asked for."""
+    """Before a robot is recorded in a format other than the requested one."""
     with pytest.raises(click.UsageError, match=text):
         settings("-a", option, value)
 

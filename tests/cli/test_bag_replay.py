@@ -23,7 +23,7 @@ import json, os
 piece = json.loads(os.environ["AIONODE_REPLAY_PIECE"])
 assert not ("/a" in piece["topics"] and piece["start_ns"] <= 7 * 10**9 < piece["end_ns"])
 """
-"""A program that fails as a test would that needs one message; a test itself takes a second."""
+"""A program that fails like a test that needs one message; a real test takes a second."""
 
 
 def aionode(*arguments: str | Path) -> Result:

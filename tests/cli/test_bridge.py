@@ -1,4 +1,4 @@
-"""What the command line says of nodes on DDS behind a bridge."""
+"""What the command line shows of nodes on DDS behind a bridge."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ async def robot(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[tuple[Node, St
 
 
 async def known(node: Node) -> None:
-    """Wait as a command does before it answers."""
+    """Wait like a command before it answers."""
     for transport in node.context.transports:
         await transport.all_known(1.0)
 
@@ -45,7 +45,7 @@ async def known(node: Node) -> None:
 async def test_topics_services_and_nodes_behind_a_bridge_are_listed(
     robot: tuple[Node, StandIn], screen: Screen
 ) -> None:
-    """As if the nodes were on Zenoh; the bridge's own node is there as on DDS."""
+    """As if the nodes were on Zenoh; the bridge's own node appears as it does on DDS."""
     node, _ = robot
     await known(node)
     await topic_verbs.list_topics(node, output=screen.output, types=True)
@@ -62,7 +62,7 @@ async def test_topics_services_and_nodes_behind_a_bridge_are_listed(
 async def test_a_service_behind_a_bridge_is_called(
     robot: tuple[Node, StandIn], screen: Screen
 ) -> None:
-    """With the type that the token tells."""
+    """With the type given in the token."""
     node, _ = robot
     await service_verbs.call(
         node, "/add", ADD, output=screen.output, values="{a: 2, b: 3}", timeout=5
@@ -88,7 +88,7 @@ async def test_doctor_finds_nothing_wrong_with_nodes_on_cyclone(
 async def test_doctor_tells_that_services_on_fast_dds_do_not_answer(
     robot: tuple[Node, StandIn], screen: Screen, by: str
 ) -> None:
-    """It is known from the QoS of topics, or else from the ids of participants."""
+    """This is known from the QoS of topics, or else from the ids of participants."""
     node, bridge = robot
     if by == "participant":
         bridge.nodes["010f" + "0" * 28 + "/other"] = {"publishers": []}

@@ -70,13 +70,13 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
 def test_no_verb_at_all_shows_what_there_is(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As ros2 does; nothing went wrong."""
+    """As in ros2; nothing went wrong."""
     assert main(words) == 0
     assert "Commands:" in capsys.readouterr().out
 
 
 def test_every_command_that_prints_data_has_json() -> None:
-    """Only what runs or writes programs, mends a bag, or prints other code has no records."""
+    """Only commands that run or write programs, repair a bag, or print code have no records."""
     without = {
         words
         for words, of_verb in commands()
@@ -140,7 +140,7 @@ def test_wrong_arguments_are_one_line_and_status_two(
 
 @pytest.fixture
 def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
-    """Let ``interface packages`` raise an error."""
+    """Make ``interface packages`` raise an error."""
 
     def fail_with(error: BaseException) -> None:
         def packages(**_: object) -> None:

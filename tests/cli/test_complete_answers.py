@@ -43,7 +43,7 @@ def env(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 
 def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
-    """The first answer has to be complete; once it had 0 to 2 of them."""
+    """The first answer has to be complete; once it contained 0 to 2 of them."""
     node = NodeInfo("8b20917502ee955ac4476e0266340d5c", 0, "many", "/")
     qos = qos_profile_default.resolved()
     chatter = ("std_msgs/msg/String", "RIHS01_0")
@@ -78,7 +78,7 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
 def test_each_command_names_a_process_that_does_not_answer(
     env: dict[str, str], *, is_stopped: bool
 ) -> None:
-    """It listens at a port of its own, as every process after the third does."""
+    """It listens on its own port, like every process after the third."""
     group = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
     with subprocess.Popen(
         [sys.executable, "-c", SILENT, str(group)], stdout=subprocess.PIPE, text=True

@@ -1,7 +1,7 @@
-"""`aionode deploy` over the ssh and scp of this host, to an SSH server in the place of a robot.
+"""`aionode deploy` with this host's ssh and scp, to an SSH server that replaces a robot.
 
-The server runs commands on this host: systemctl and journalctl are scripts that write down how
-they were called, and pip installs nothing from elsewhere.
+The server runs commands on this host: systemctl and journalctl are scripts that record their calls,
+and pip installs nothing from elsewhere.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ pytestmark = [
         not (shutil.which("ssh") and shutil.which("scp") and shutil.which("flock")),
         reason="the client of OpenSSH is not installed",
     ),
-    pytest.mark.filterwarnings("ignore::ResourceWarning"),  # connections that tests break
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),  # connections for tests to break
 ]
 
 WRITES_DOWN = '#!/bin/sh\necho "$(basename "$0") $*" >>{calls}\n'
@@ -51,18 +51,18 @@ class Host:
 
     @property
     def current(self) -> Path:
-        """The link to the release that runs."""
+        """The link to the running release."""
         return self.folder / "opt" / "my_robot" / "current"
 
     def calls(self) -> list[str]:
-        """Return how systemctl was called since this was asked last."""
+        """Return the calls of systemctl since the last time."""
         file = self.folder / "calls"
         calls = file.read_text().splitlines() if file.exists() else []
         file.unlink(missing_ok=True)
         return calls
 
     async def process(self, process: asyncssh.SSHServerProcess[bytes]) -> None:
-        """Run a command as a login shell does."""
+        """Run a command like a login shell."""
         assert process.command is not None
         self.commands.append(process.command)
         fakes = f"{self.folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
@@ -91,7 +91,7 @@ class Server(asyncssh.SSHServer):
         self.host.connections.append(conn)
 
     def begin_auth(self, username: str) -> bool:
-        """Ask for nothing."""
+        """Request no authentication."""
         return False
 
 
@@ -155,7 +155,7 @@ def workspace(host: Host, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
 
 
 async def deploy(workspace: Path, *options: str, python: str) -> tuple[int, str]:
-    """Run the command; return its exit status and all that it prints."""
+    """Run the command; return its exit status and all its output."""
     around = workspace.parent
     process = await asyncio.create_subprocess_exec(
         *(sys.executable, "-m", "aionode", "deploy", "robot", str(workspace)),
@@ -164,7 +164,7 @@ async def deploy(workspace: Path, *options: str, python: str) -> tuple[int, str]
         stdin=asyncio.subprocess.DEVNULL,
         stdout=asyncio.subprocess.PIPE,
         stderr=asyncio.subprocess.STDOUT,
-        env={**os.environ, "PIP_NO_BUILD_ISOLATION": "false"},  # hatchling is here already
+        env={**os.environ, "PIP_NO_BUILD_ISOLATION": "false"},  # hatchling is already here
     )
     output, _ = await process.communicate()
     assert process.returncode is not None
@@ -172,7 +172,7 @@ async def deploy(workspace: Path, *options: str, python: str) -> tuple[int, str]
 
 
 async def test_a_workspace_is_installed_and_its_unit_started(host: Host, workspace: Path) -> None:
-    """A second run changes nothing, and a change makes a release beside the first."""
+    """A second run changes nothing, and a change creates a release beside the first."""
     status, text = await deploy(workspace, python=sys.executable)
     assert status == 0, text
     first = host.current.resolve()
@@ -192,7 +192,7 @@ async def test_a_workspace_is_installed_and_its_unit_started(host: Host, workspa
     assert "my_robot.service unchanged" in text
     assert host.calls() == [
         "systemctl enable --quiet my_robot.service",
-        "systemctl start my_robot.service",  # nothing, if it runs
+        "systemctl start my_robot.service",  # nothing, if it is running
     ]
 
     (workspace / "src/my_robot/config/parameters.yaml").write_text("/**: {}\n")
@@ -228,7 +228,8 @@ async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: 
     assert text.splitlines()[-1].startswith("robot: no connection, or it broke (install)")
     assert (host.current.resolve(), host.calls()) == (before, [])
 
-    await asyncio.to_thread(barrier.write_text, "fail\n")  # what the broken one left running
+    # processes that the broken one left running
+    await asyncio.to_thread(barrier.write_text, "fail\n")
     barrier.unlink()
     status, text = await deploy(workspace, "--no-follow", python="python-without-pip")
     assert status == 0, text
@@ -240,7 +241,7 @@ async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: 
 async def test_a_robot_that_cannot_take_a_release_is_left_alone(
     host: Host, workspace: Path
 ) -> None:
-    """Its Python, its user and its folder are looked at before anything is copied."""
+    """Its Python, its user and its folder are checked before anything is copied."""
     status, text = await deploy(workspace, python="python-of-another-robot")
 
     assert status == 1
@@ -250,7 +251,7 @@ async def test_a_robot_that_cannot_take_a_release_is_left_alone(
 
 
 async def test_a_dry_run_connects_to_nothing(host: Host, workspace: Path) -> None:
-    """It prints each command and script instead, and what is shipped."""
+    """It prints each command and script instead, and the files to ship."""
     status, text = await deploy(workspace, "--dry-run", python="python3")
 
     assert status == 0
@@ -281,7 +282,7 @@ def test_a_unit_that_runs_elsewhere_is_refused(
 def test_nothing_is_shipped_that_begins_with_a_dot(
     workspace: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Such as secrets, caches, and the history of the repository; nor what was built."""
+    """Such as secrets, caches, and the repository's history; nor are build results."""
     for name in (".env", ".venv/bin/python", "build/my_robot/copy.py"):
         (workspace / name).parent.mkdir(parents=True, exist_ok=True)
         (workspace / name).write_text("secret\n")

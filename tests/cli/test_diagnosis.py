@@ -1,4 +1,4 @@
-"""``aionode doctor``: which problems it finds, and what it leaves unmentioned."""
+"""``aionode doctor``: the problems it finds, and what it does not mention."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ async def test_two_types_do_not_communicate(
 async def test_simulated_time_that_nobody_publishes_is_a_problem(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The nodes stand still without a word."""
+    """The nodes stand still silently."""
     follower = node_factory("follower")
     follower.set_parameters([Parameter("use_sim_time", value=True)])
 
@@ -254,7 +254,7 @@ def test_the_nearest_name_is_suggested() -> None:
 async def test_services_of_another_node_are_no_misspelling(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """All nodes have services of these names: to rename one would not help."""
+    """All nodes have services with these names: renaming one would not help."""
     node_factory("first").create_service(AddTwoInts, "~/add", lambda request, response: response)
     node_factory("client").create_client(AddTwoInts, "/second/add")
 

@@ -1,4 +1,4 @@
-"""Commands beside a ROS 2 Humble robot: what to set, and the answers once it is set."""
+"""Commands beside a ROS 2 Humble robot: the setting they suggest, and answers once it is set."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TYPE = "std_msgs::msg::dds_::String_"
 
 @pytest.fixture(scope="module")
 def env() -> Iterator[dict[str, str]]:
-    """An environment in which there is one publisher of Humble."""
+    """An environment with one publisher of Humble."""
     isolated = isolated_environment()
     port = isolated["AIONODE_MEETING_PORTS"].split(",")[0]
     with pytest.MonkeyPatch.context() as patch:
@@ -42,7 +42,7 @@ def run(env: dict[str, str], *arguments: str, **variables: str) -> subprocess.Co
 
 
 def test_a_command_says_that_the_robot_is_humble(env: dict[str, str]) -> None:
-    """The graph is shown all the same."""
+    """The graph is shown nevertheless."""
     done = run(env, "topic", "list")
 
     assert done.stdout == "/chatter\n"
@@ -58,7 +58,7 @@ def test_a_command_that_speaks_humble_has_nothing_to_say(env: dict[str, str]) ->
 
 
 def test_the_doctor_calls_it_a_problem(env: dict[str, str]) -> None:
-    """Nothing else would explain why a listener hears nothing."""
+    """Nothing else would explain why a listener receives nothing."""
     done = run(env, "doctor")
 
     assert (

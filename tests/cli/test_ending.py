@@ -25,7 +25,7 @@ AIONODE = [sys.executable, "-m", "aionode"]
 ROOT = Path(__file__).parents[2]
 PIPE_BYTES = 4096
 ENDS_S = 30.0
-"""Generous for a busy machine; without the mended defects these commands never ended."""
+"""Generous for a busy machine; without the fixes these commands never ended."""
 
 CHATTERBOX = """
 from aionode import Node
@@ -199,7 +199,7 @@ class Threaded(Node):
 
 
 def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_path: Path) -> None:
-    """They are the user's, as in any Python program."""
+    """They belong to the user, as in any Python program."""
     (tmp_path / "threaded.py").write_text(THREADED)
 
     done = fork_server.run(
@@ -280,9 +280,9 @@ print("still here", statuses)
 def test_a_program_that_runs_a_command_keeps_its_process(
     env: dict[str, str], tmp_path: Path
 ) -> None:
-    """Neither a close that takes longer than its deadline ends it, nor another program replaces it.
+    """Neither a close that exceeds its deadline ends it, nor does another program replace it.
 
-    A library is a guest in its process: only what the shell started may end so.
+    A library is a guest in its process: only a process started by the shell may end this way.
     """
     done = fork_server.run(
         ["-c", GUEST], env=env | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, timeout=ENDS_S
@@ -313,7 +313,7 @@ with threading._active_limbo_lock:
 def test_a_signal_that_interrupts_the_start_of_a_thread_sets_a_deadline(
     env: dict[str, str], tmp_path: Path
 ) -> None:
-    """The handler runs while the interrupted thread holds the lock that starting threads takes."""
+    """The handler runs while the interrupted thread holds the lock needed to start threads."""
     done = fork_server.run(
         ["-c", INSIDE_START], env=env | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, timeout=ENDS_S
     )

@@ -50,7 +50,7 @@ TYPES = [Header, Image, Int32, Parameter, PoseArray, String, TwistStamped, UInt8
 
 
 def expect_one_line(error: AionodeError) -> None:
-    """Check what is printed of an error."""
+    """Check the printed error."""
     assert 0 < len(one_line(error)) < 1100
     assert "\n" not in one_line(error)
 
@@ -74,7 +74,7 @@ def test_any_text_is_a_message_or_an_error(msg_type: Any, text: str) -> None:
 
 
 def filled(msg_type: Any, text: str) -> Any:
-    """Return what `topic pub` publishes."""
+    """Return the message that `topic pub` publishes."""
     return Filler(msg_type, text).message(Time(seconds=1))
 
 

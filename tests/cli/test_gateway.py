@@ -1,4 +1,4 @@
-"""``aionode gateway``: what it serves with, and what it refuses to start with."""
+"""``aionode gateway``: what it serves, and when it refuses to start."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.support.waiting import until
 async def test_it_serves_until_it_is_stopped(
     tool: Node, screen: Screen, running: Running, node_factory: Callable[..., Node]
 ) -> None:
-    """And says where, as port 0 is any free one."""
+    """It prints the port, since port 0 means any free one."""
     async with running(serving(None, False, "127.0.0.1", 0)(tool, screen.output)):
         await until(lambda: "listening on 127.0.0.1:" in screen.text)
         port = screen.text.rpartition(":")[2].strip()
@@ -36,7 +36,7 @@ async def test_it_serves_until_it_is_stopped(
 
 
 def test_its_node_describes_types_that_only_it_has() -> None:
-    """Others see topics and services of rosbridge and rosapi, and have no package of these."""
+    """Others see topics and services of rosbridge and rosapi, and have no package for these."""
     aionode = [sys.executable, "-m", "aionode"]
     env = {**os.environ, **isolated_environment()}
     with subprocess.Popen(
@@ -69,7 +69,7 @@ async def test_other_machines_need_a_policy(tool: Node, screen: Screen) -> None:
 
 
 def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Before a node is made, in one line."""
+    """Before a node is created, in one line."""
     wrong = tmp_path / "policy.toml"
     wrong.write_text("[[allow]]\npublsh = '/x'")
 
@@ -87,7 +87,7 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
 async def test_types_writes_what_is_in_use(
     tool: Node, screen: Screen, node_factory: Callable[..., Node]
 ) -> None:
-    """The maps have the names of the robot, so that a page names a topic and has its type."""
+    """The maps use the robot's names, so that a page names a topic and gets its type."""
     node_factory("robot").create_publisher(String, "/chatter", 10)
 
     await types(tool, screen.output)

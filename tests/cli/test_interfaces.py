@@ -21,7 +21,7 @@ def test_show_prints_a_service(screen: Any) -> None:
 
 
 def test_show_says_what_a_type_is_for(screen: Any) -> None:
-    """A service by itself, and each of its halves; `ros2 interface show` has other comments."""
+    """A service as a whole, and each of its halves; `ros2 interface show` has other comments."""
     own = "# Comments: aionode's own; a sourced ROS 2 has those of its files.\n\n"
     show(get_interface("std_srvs/srv/Trigger"), output=screen.output)
     show(get_interface("geometry_msgs/msg/Point"), output=screen.output)
@@ -43,7 +43,7 @@ SHOWN = [name for name in interface_names() if not name.startswith("test_msgs/")
 
 
 def test_every_shipped_type_has_comments(screen: Any) -> None:
-    """And a stand-in such as "The request of GetMap." is none."""
+    """A placeholder such as "The request of GetMap." does not count."""
     for name in SHOWN:
         seen = len(screen.text)
         show(get_interface(name), output=screen.output)
@@ -69,13 +69,13 @@ def test_show_says_what_fields_mean(screen: Any) -> None:
         "# A velocity: what `/cmd_vel` carries.\n\n"
         "# In m/s; x is forward, y to the left, z up.\nVector3 linear\n\t"
     )
-    assert screen.text.count("#") == 4  # the first says whose comments they are
+    assert screen.text.count("#") == 4  # the first says to what the comments belong
 
 
 def test_show_prints_the_comments_of_the_installed_file(
     screen: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The file of the sourced ROS 2 is what its other tools show."""
+    """That file is what ROS's other tools show."""
     folder = tmp_path / "share" / "geometry_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Vector3.msg").write_text("float64 x  # first\nfloat64 y\nfloat64 z\n")

@@ -30,7 +30,7 @@ from tests.support.peers import DOMAIN_ID, isolated_environment, ros_router, ros
 NODES = 300
 TOPICS = 1000
 GUESTS = 20
-"""How many nodes are there that come and go."""
+"""The number of nodes that come and go."""
 
 CHANGES_PER_S = 100
 QOS = QoSProfile(depth=10).resolved()
@@ -39,7 +39,7 @@ SERVICES = ("describe_parameters", "get_parameters", "list_parameters", "set_par
 
 
 class Robot:
-    """A session that announces what so many processes of ROS 2 would."""
+    """A session that announces as much as that many processes of ROS 2."""
 
     def __init__(self, session: zenoh.Session) -> None:
         self.session = session
@@ -50,7 +50,7 @@ class Robot:
             self._tokens += self.declare_node(f"node_{number}", number)
 
     def declare_node(self, name: str, number: int) -> list[zenoh.LivelinessToken]:
-        """Declare a node and its endpoints: every 300th topic, and the services that all have."""
+        """Declare a node and its endpoints: every 300th topic, and the services of every node."""
         node = NodeInfo(str(self.session.zid()), next(self._ids), name, "/")
         mine = range(number, TOPICS, NODES)
         wanted = [
@@ -72,7 +72,7 @@ class Robot:
         ]
 
     def gid_of_publisher(self, name: str) -> bytes:
-        """Return the gid of the publisher of a topic, as its token has it."""
+        """Return the gid of a topic's publisher, as in its token."""
         (publisher,) = (
             endpoint
             for endpoint in self._endpoints
@@ -94,7 +94,7 @@ class Robot:
 
 @contextmanager
 def in_thread(work: Any) -> Iterator[None]:
-    """Run `work` in a thread meanwhile."""
+    """Run `work` in a thread within the block."""
     ended = threading.Event()
     thread = threading.Thread(target=work, args=(ended,))
     thread.start()
@@ -107,7 +107,7 @@ def in_thread(work: Any) -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def environment() -> Iterator[None]:
-    """The variables of the robot, of which all runs in this process, which may be slow."""
+    """The variables of the robot, all of which runs in this process, which may be slow."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("aionode.cli._support.session.QUIET_S", 20.0)
         for name, value in isolated_environment().items():
@@ -117,7 +117,7 @@ def environment() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def robot(environment: None) -> Iterator[Robot]:
-    """The robot beside its router, in which nodes come and go."""
+    """The robot beside its router, with nodes that come and go."""
     with closing(ros_router()), closing(ros_session()) as session:
         robot = Robot(session)
         with in_thread(robot.let_guests_come_and_go):
@@ -147,7 +147,7 @@ async def test_lists_beside_a_large_robot_are_complete(robot: Robot, screen: Any
 async def test_one_topic_of_a_large_robot_is_shown_with_its_rate(
     robot: Robot, screen: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its endpoints as they were announced, and each of its messages, while the graph changes."""
+    """Its endpoints as announced, and each of its messages, while the graph changes."""
     key = data_key(DOMAIN_ID, "/t7", *STRING)
     payload = cdr.encode(String(data="x"))
     gid = robot.gid_of_publisher("/t7")

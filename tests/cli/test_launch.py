@@ -37,13 +37,13 @@ def test_it_prints_what_it_would_start(file: str, capsys: pytest.CaptureFixture[
 def test_an_argument_without_its_colon_is_no_file_of_a_package(
     file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The first word is a file that is there, so the second one is an argument."""
+    """The first word is an existing file, so the second one is an argument."""
     assert main(["launch", file, "speed=0.8"]) == 1
     assert "'speed=0.8': expected NAME:=VALUE" in capsys.readouterr().err
 
 
 def test_it_prints_what_happens_later(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """When it happens, what containers get, and what is only known then."""
+    """When it happens, what containers load, and values known only then."""
     path = tmp_path / "a.launch.yaml"
     path.write_text(
         """
@@ -85,7 +85,7 @@ def test_it_prints_records(file: str, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_it_lists_arguments(file: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """With what they are for, and their defaults."""
+    """With their descriptions and defaults."""
     assert main(["launch", file, "--show-args"]) == 0
 
     assert capsys.readouterr().out == "'speed':\n    in m/s\n    (default: '0.5')\n"
@@ -94,7 +94,7 @@ def test_it_lists_arguments(file: str, capsys: pytest.CaptureFixture[str]) -> No
 def test_it_finds_a_file_of_a_package(
     file: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """That of a workspace needs no build; an unknown name is an error that lists the files."""
+    """A package of a workspace needs no build; for an unknown name, the error lists the files."""
     folder = Path(file).parent
     (folder / "package.xml").write_text("<package><name>robot</name></package>")
     monkeypatch.chdir(folder)
@@ -108,9 +108,9 @@ def test_it_finds_a_file_of_a_package(
 def test_its_exit_status_is_that_of_the_first_failure(
     tmp_path: Path, options: list[str], status: int
 ) -> None:
-    """Unless it is asked for that of ros2 launch, as test frameworks do.
+    """Unless the status of ros2 launch is requested, as by test frameworks.
 
-    The last words of each process are in a file, on request.
+    On request, the last words of each process are written to a file.
     """
     path = tmp_path / "a.launch.xml"
     path.write_text("""<launch><executable cmd="sh -c 'echo no device; exit 3'"/></launch>""")

@@ -17,7 +17,7 @@ from aionode.testing import ManualClock, settle
 
 
 class Camera(LifecycleNode):
-    """Cannot be activated."""
+    """A node that cannot be activated."""
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:
         """Fail."""
@@ -26,7 +26,7 @@ class Camera(LifecycleNode):
 
 @pytest.fixture
 async def camera(node_factory: Callable[..., Any]) -> Camera:
-    """A managed node that runs, beside one that is not managed."""
+    """A running managed node, beside one that is not managed."""
     node_factory("talker")
     camera_node: Camera = node_factory(Camera, "camera")
     await settle()
@@ -34,7 +34,7 @@ async def camera(node_factory: Callable[..., Any]) -> Camera:
 
 
 async def test_nodes_lists_managed_nodes_only(tool: Node, camera: Camera, screen: Any) -> None:
-    """Names, or how many there are."""
+    """Names, or their number."""
     await list_nodes(tool, output=screen.output)
     await list_nodes(tool, count=True, output=screen.output)
 
@@ -42,7 +42,7 @@ async def test_nodes_lists_managed_nodes_only(tool: Node, camera: Camera, screen
 
 
 async def test_get_prints_label_and_number(tool: Node, camera: Camera, screen: Any) -> None:
-    """With the name of the node where all are asked."""
+    """With the name of the node if all are asked."""
     await get_state(tool, "/camera", output=screen.output)
     await get_state(tool, None, output=screen.output)
 
@@ -103,10 +103,10 @@ async def test_an_unknown_node_is_an_error(tool: Node, camera: Camera, screen: A
 
 
 class Slow(LifecycleNode):
-    """Is never configured."""
+    """A node that is never configured."""
 
     async def on_configure(self, state: State) -> TransitionCallbackReturn:
-        """Wait for what does not come."""
+        """Wait forever."""
         await asyncio.Event().wait()
         return TransitionCallbackReturn.SUCCESS
 
@@ -117,7 +117,7 @@ async def test_set_waits_for_a_transition_as_long_as_asked(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """Without the option it waits for as long as the transition takes, as ros2 does."""
+    """Without the option it waits as long as the transition takes, like ros2."""
     node_factory(Slow, "slow")
     await settle()
 
@@ -132,7 +132,7 @@ async def test_get_gives_up_a_node_that_does_not_answer(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """After the time that the option says."""
+    """After the time set by the option."""
     silent = node_factory("silent")
 
     async def never(request: Any, response: Any) -> Any:

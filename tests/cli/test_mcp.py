@@ -1,4 +1,4 @@
-"""``aionode mcp``: the settings of programs, tools without a model, and what it starts with."""
+"""``aionode mcp``: the settings of programs, tools without a model, and how it starts."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ async def test_a_tool_is_called_without_a_model(
 
 
 async def test_without_a_tool_they_are_listed(tool: Node, screen: Screen) -> None:
-    """With what they do; without a policy none that changes anything."""
+    """With their descriptions; without a policy, none that changes anything."""
     await try_tool(
         tool, screen.output, tool=None, arguments=[],
         policy=policy_of(None, allow_write=False), **OPTIONS,
@@ -80,7 +80,7 @@ COMMAND = ["python", "-m", "aionode", "mcp", "--policy", 'a "b".toml']
 
 @pytest.mark.parametrize("host", ["claude-desktop", "cursor", "vscode", "windsurf", "gemini-cli"])
 def test_the_settings_of_a_program_are_json(host: str) -> None:
-    """Below the line that says where they go."""
+    """Below the line that says where they belong."""
     lines = settings_for(host, COMMAND).splitlines()
     (servers,) = json.loads("\n".join(lines[1:])).values()
 
@@ -97,7 +97,7 @@ def test_the_settings_of_codex_are_toml() -> None:
 
 
 def test_the_settings_have_whole_paths_and_the_options_given() -> None:
-    """The program starts the command in a folder of its own."""
+    """The program starts the command in another folder."""
     text = settings("claude-code", ["mcp", "--policy", "p.toml", "--domain", "7", "--print-config"])
 
     assert f"mcp --policy {Path.cwd() / 'p.toml'} --domain 7" in text
@@ -123,7 +123,7 @@ def test_the_settings_have_whole_paths_and_the_options_given() -> None:
 def test_a_wrong_option_says_what_fits(
     words: list[str], expected: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """On stderr, as stdout belongs to the protocol."""
+    """On stderr, since stdout belongs to the protocol."""
     assert main(["mcp", *words]) != 0
     shown = capsys.readouterr()
     assert expected in shown.err
@@ -131,7 +131,7 @@ def test_a_wrong_option_says_what_fits(
 
 
 async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
-    """A program of the desktop passes no variable of the environment on."""
+    """A desktop program passes no environment variables on."""
     words = ["-m", "aionode", "mcp", "--domain", "7"]
     server = mcp.StdioServerParameters(
         command=sys.executable, args=words, env=isolated_environment()
@@ -144,7 +144,7 @@ async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
 
 
 async def test_it_ends_with_its_client_while_a_call_is_under_way() -> None:
-    """The kernel closes the streams of a client that is killed; nothing else tells the command."""
+    """The kernel closes the streams of a killed client; nothing else notifies the command."""
     command = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "aionode", "mcp",
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -190,7 +190,7 @@ def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
 
 @pytest.mark.parametrize("words", [["mcp"], ["mcp", "try"], ["mcp", "try", "stop"]])
 def test_a_missing_extra_is_named(words: list[str]) -> None:
-    """It is another one than that of the gateway."""
+    """It differs from that of the gateway."""
     program = (
         "import sys\nsys.modules['mcp'] = None\n"
         f"from aionode.cli import main\nsys.exit(main({words}))\n"

@@ -1,4 +1,4 @@
-"""A package that `aionode new` has written runs, and passes its test, as it is."""
+"""A package written by `aionode new` runs, and passes its test, unchanged."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_new_package_is_launched(package: Path) -> None:
 
 
 def test_a_package_of_ros_has_what_colcon_reads(package: Path) -> None:
-    """A setup.py with a marker for ament's index, and messages built by CMake, only where asked."""
+    """A setup.py with a marker for ament's index, and messages built by CMake only if requested."""
     source = package / "src"
     files = {str(path.relative_to(source)) for path in source.rglob("*")}
     of_ros = {
@@ -88,7 +88,7 @@ def test_a_name_that_does_not_fit_writes_nothing(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """What is there is never overwritten."""
+    """Existing files are never overwritten."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "there").mkdir()
 

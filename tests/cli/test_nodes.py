@@ -46,7 +46,7 @@ async def test_two_nodes_of_one_name_are_warned_of(
 async def test_info_prints_what_ros2_prints(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """A heading without anything below has an empty line, as ros2's."""
+    """A heading with nothing below it has an empty line, as in ros2."""
     node_factory("param_node")
 
     await info(tool, "/param_node", output=screen.output)

@@ -29,7 +29,7 @@ NOTHING: dict[str, Any] = {
 
 
 def test_without_options_there_is_no_profile() -> None:
-    """The verb then chooses by what the publishers offer."""
+    """The verb then chooses according to the publishers' offers."""
     options = {**NOTHING, "other": 1}
 
     assert qos_from("default", options) is None
@@ -37,7 +37,7 @@ def test_without_options_there_is_no_profile() -> None:
 
 
 def test_one_option_changes_the_preset_in_one_place() -> None:
-    """The preset itself stays as it is for the next one."""
+    """The preset itself stays unchanged for the next command."""
     profile = qos_from("sensor_data", {**NOTHING, "qos_reliability": "reliable"})
 
     assert profile == qos_profile_sensor_data.replace(reliability=ReliabilityPolicy.RELIABLE)
@@ -45,7 +45,7 @@ def test_one_option_changes_the_preset_in_one_place() -> None:
 
 
 def test_all_options_make_a_profile() -> None:
-    """Names in upper or lower case are one to click."""
+    """Click does not distinguish upper and lower case."""
     profile = qos_from(
         "default",
         {
@@ -66,7 +66,7 @@ def test_all_options_make_a_profile() -> None:
 
 
 def test_a_history_for_late_subscriptions_holds_at_least_one_message() -> None:
-    """As ros2 does it: system_default has no depth of its own."""
+    """As in ros2: system_default has no depth of its own."""
     profile = qos_from(
         "default",
         {**NOTHING, "qos_profile": "system_default", "qos_durability": "transient_local"},

@@ -58,7 +58,7 @@ class Terminal(io.StringIO):
 
 
 def test_a_terminal_shows_the_control_characters_of_others_as_escapes() -> None:
-    """A value could retitle the terminal, or hide what stands above it."""
+    """A value could retitle the terminal, or hide what is above it."""
     stdout, stderr = Terminal(), io.StringIO()
     output = Output(stdout, stderr)
 
@@ -77,5 +77,5 @@ def test_a_pipe_gets_values_as_they_are(screen: Any) -> None:
 
 
 def test_a_row_of_csv_is_one_line() -> None:
-    """A line break in a value would begin another message."""
+    """A line break in a value would start another message."""
     assert csv_line({"a": "one\ntwo\r", "b": [1, 2]}) == "one\\ntwo\\r,1,2"

@@ -73,7 +73,7 @@ async def test_list_of_all_prints_the_nodes(
 async def test_several_values_are_printed_below_their_names(
     tool: Node, owner: Node, screen: Any
 ) -> None:
-    """As ros2 of Lyrical does."""
+    """As in ros2 of Lyrical."""
     await get(tool, "/param_node", ["name", "speed"], output=screen.output)
     await get(tool, "/param_node", ["name", "speed"], hide_type=True, output=screen.output)
 
@@ -85,7 +85,7 @@ async def test_several_values_are_printed_below_their_names(
 async def test_one_that_is_missing_among_several_is_named(
     tool: Node, owner: Node, screen: Any
 ) -> None:
-    """ROS answers nothing for any of them then."""
+    """ROS then returns none of them."""
     with pytest.raises(CommandError, match="no parameter 'sped'"):
         await get(tool, "/param_node", ["name", "sped"], output=screen.output)
 
@@ -93,7 +93,7 @@ async def test_one_that_is_missing_among_several_is_named(
 async def test_a_parameter_is_asked_of_all_nodes_without_the_name_of_one(
     tool: Node, owner: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Nodes that do not have it are left out, as ros2 of Lyrical does."""
+    """Nodes that do not have it are left out, as in ros2 of Lyrical."""
     other = node_factory("other")
     other.declare_parameter("speed", 2)
     node_factory("silent", start_parameter_services=False)
@@ -146,7 +146,7 @@ async def test_parameters_are_set_all_or_none_if_asked(
 
 
 def test_a_parameter_without_a_value_is_an_error_of_usage() -> None:
-    """Nothing is asked of the network before."""
+    """The network is not queried before."""
     done = CliRunner().invoke(param_command, ["set", "/param_node", "name", "ann", "speed"])
 
     assert done.exit_code == 2
@@ -254,7 +254,7 @@ async def test_set_refuses_a_mapping(tool: Node, owner: Node, screen: Any) -> No
 async def test_a_failed_set_is_an_error(
     name: str, reason: str, tool: Node, owner: Node, screen: Any
 ) -> None:
-    """ros2 returns 0 here, so that scripts go on with the old value."""
+    """ros2 returns 0 here, so that scripts continue with the old value."""
     status = await set_parameters(tool, "/param_node", [(name, "5")], output=screen.output)
 
     assert status == 1

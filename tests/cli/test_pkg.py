@@ -38,7 +38,7 @@ def test_executables_of_turtlesim_are_those_of_the_tutorial(screen: Any) -> None
 
 
 def test_executables_of_all_packages_include_those_of_the_workspace(screen: Any) -> None:
-    """And say what is started, if that is asked for."""
+    """On request they also show what is started."""
     executables(None, output=screen.output)
     assert "my_robot drive\n" in screen.text
     assert "joy joy_node\n" in screen.text
@@ -48,14 +48,14 @@ def test_executables_of_all_packages_include_those_of_the_workspace(screen: Any)
 
 
 def test_packages_of_the_workspace_and_of_aionode_are_listed(screen: Any) -> None:
-    """One a line."""
+    """One per line."""
     list_packages(output=screen.output)
 
     assert {"my_robot", "turtlesim", "tf2_ros"} <= set(screen.text.split())
 
 
 def test_prefix_is_the_folder_of_a_package(screen: Any, workspace: Path) -> None:
-    """The source folder of one of the workspace; of one of aionode's there is its data only."""
+    """For a package of the workspace, its source folder; of one of aionode's there is only data."""
     prefix("my_robot", output=screen.output)
     prefix("turtlesim", output=screen.output, share=True)
 
@@ -67,7 +67,7 @@ def test_prefix_is_the_folder_of_a_package(screen: Any, workspace: Path) -> None
 
 
 def test_a_package_that_is_not_there_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    """With what is close."""
+    """With similar names."""
     assert main(["pkg", "executables", "turtlsim"]) == 1
 
     assert "turtlesim" in capsys.readouterr().err

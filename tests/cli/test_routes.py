@@ -1,4 +1,4 @@
-"""Which route a pair uses, as another process sees it."""
+"""The route of a pair of endpoints, as seen by another process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NO_LINKS = LinkStatus(set(), set())
 
 
 def endpoint(kind: EndpointKind, participant: str, name: str) -> EndpointInfo:
-    """Return an endpoint of /chatter, of a node in a process of its own."""
+    """Return an endpoint of /chatter, of a node in a separate process."""
     node = NodeInfo(participant, 0, name, "/")
     gid = f"{participant}/{name}".encode()
     return EndpointInfo(kind, node, 1, "/chatter", "a/msg/B", "hash", QoSProfile(depth=1), gid)

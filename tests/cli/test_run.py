@@ -130,7 +130,7 @@ class Brief(Node):
 def test_a_file_that_runs_its_nodes_itself_runs_once(
     last_line: str, name: str, program: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A beginner's file has no guard: to import it is to run it."""
+    """A beginner's file has no guard: importing it runs it."""
     program.with_name("cli_run_itself.py").write_text(
         "import aionode\n" + RUNS_ITSELF.format(last_line)
     )
@@ -145,7 +145,7 @@ def test_a_file_that_runs_its_nodes_itself_runs_once(
 def test_a_file_that_runs_its_nodes_itself_is_refused_beside_others(
     program: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The others would have waited for its end without a word."""
+    """Otherwise the others would silently have waited for its end."""
     file = program.with_name("cli_run_itself.py")
     file.write_text("import aionode\n" + RUNS_ITSELF.format("aionode.run(Brief)"))
     sys.modules.pop("cli_run_itself", None)
@@ -198,7 +198,7 @@ def test_a_package_and_its_executable_are_a_program(workspace: Path) -> None:
 def test_a_function_of_a_program_of_rclpy_runs_as_one(
     place: str, workspace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Wherever the user is in the workspace, and not as a function that makes a node."""
+    """Wherever the user is in the workspace, rather than as a function that creates a node."""
     monkeypatch.chdir(workspace / place)
 
     command = Programs(None).command(["my_robot.mover:main", "fast"])
@@ -235,7 +235,7 @@ def test_classes_of_nodes_are_found_in_packages(workspace: Path) -> None:
 def test_an_executable_that_is_missing_is_named(
     args: list[str], error: type[Exception], says: str
 ) -> None:
-    """With what is close to it."""
+    """With a similar name."""
     with pytest.raises(error) as caught:
         Programs(None).command(args)
 
@@ -253,7 +253,7 @@ def test_an_executable_that_is_missing_is_named(
 def test_a_program_that_needs_ros_is_told_by_which_option_it_runs(
     line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """In one line, where its text does not show that it is a program of rclpy."""
+    """In one line, if its text does not show that it is a program of rclpy."""
     program = tmp_path / "needs_ros.py"
     program.write_text(line)
 

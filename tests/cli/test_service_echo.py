@@ -40,7 +40,7 @@ async def echoed(running: Any, tool: Node, server: Node, **options: Any) -> None
 async def test_each_event_is_yaml_and_three_dashes(
     running: Any, tool: Node, server: Node, screen: Any
 ) -> None:
-    """As ros2 prints it: the type of the event by name, and empty lists for what is not there."""
+    """As in ros2: the type of the event by name, and empty lists for missing contents."""
     await echoed(running, tool, server, output=screen.output, no_arr=True)
 
     first, second, end = screen.text.split("---\n")
@@ -115,7 +115,7 @@ async def test_a_timeout_without_events_is_an_error(
 
 
 async def test_an_unknown_service_is_an_error(tool: Node, server: Node, screen: Any) -> None:
-    """With a name that may be meant."""
+    """With a similar name."""
     with pytest.raises(CommandError, match="Did you mean '/add_two_ints'"):
         await echo(tool, "/add_two_int", output=screen.output)
 

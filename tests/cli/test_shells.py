@@ -66,7 +66,7 @@ def test_a_type_is_completed_in_two_steps(child: Any) -> None:
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_values_are_completed_as_one_word(child: Any) -> None:
-    """They have blanks, commas and quotes; the command gets them as they are in YAML."""
+    """They contain blanks, commas and quotes; the command gets them as they are in YAML."""
     child.send("aionode topic pub -1 -w 0 /a std_msgs/msg/Header \t")
     child.expect("frame_id")
     child.send("\r")
@@ -76,7 +76,7 @@ def test_values_are_completed_as_one_word(child: Any) -> None:
 @pytest.mark.stress
 @pytest.mark.parametrize("shell", SHELLS)
 def test_an_option_is_completed(child: Any) -> None:
-    """Its end is unique, so that the shell adds it without a list."""
+    """Its end is unique, so the shell adds it without a list."""
     child.send("aionode interface packages --only-m\t")
     child.expect("--only-msgs")
     child.send("\r")

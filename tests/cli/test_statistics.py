@@ -53,7 +53,7 @@ def test_one_message_makes_no_bandwidth() -> None:
 
 @pytest.mark.parametrize("late_s", [0.0, 0.01, 0.019])
 def test_the_bandwidth_is_exact_from_the_second_message_on(late_s: float) -> None:
-    """The bytes of the first one came before the time that is counted: 5 of 4.8 MB/s otherwise."""
+    """The first message's bytes came before the counted time: otherwise 5 instead of 4.8 MB/s."""
     bandwidth = Bandwidth(100)
     for number in range(3):
         bandwidth.arrive(number * 20_000_000, 1_000)

@@ -60,7 +60,7 @@ async def test_status_as_json_has_a_record_for_each_member(tool: Node, system: S
 
 
 async def test_a_member_is_restarted_and_stopped(tool: Node, system: System, screen: Any) -> None:
-    """The system goes on."""
+    """The system continues."""
     before = system.status()["driver"].pid
     await restart_member(tool, "driver", output=screen.output)
     await system.ready()
@@ -84,7 +84,7 @@ async def test_log_prints_the_lines_from_now_on(
 
 
 async def test_the_whole_system_is_ended(tool: Node, system: System, screen: Any) -> None:
-    """`wait` returns in the program of the system."""
+    """`wait` returns in the system's program."""
     await stop_member(tool, None, every=True, output=screen.output)
     await system.wait()
 
@@ -94,7 +94,7 @@ async def test_the_whole_system_is_ended(tool: Node, system: System, screen: Any
 async def test_unknown_members_and_systems_are_named(
     tool: Node, system: System, screen: Any
 ) -> None:
-    """Beside those that there are."""
+    """Together with the existing ones."""
     with pytest.raises(CommandError, match="nope: no such member; the system has driver"):
         await restart_member(tool, "nope", output=screen.output)
     with pytest.raises(CommandError, match="no system nope runs: choose one with --system: robot"):

@@ -49,7 +49,7 @@ class Terminals:
         }
 
     def open(self, *arguments: str) -> Any:
-        """Start a command in a terminal of its own."""
+        """Start a command in its own terminal."""
         return pexpect.spawn(
             AIONODE[0],
             [*AIONODE[1:], *arguments],
@@ -97,9 +97,9 @@ def terminals() -> Iterator[Terminals]:
 
 @pytest.fixture
 def in_robot(terminals: Terminals, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The variables of a terminal, for commands that run in the process of the tests.
+    """The variables of a terminal, for commands that run in the tests' process.
 
-    A process of its own would import all of aionode for each.
+    A separate process would import all of aionode for each.
     """
     for name, value in terminals.env.items():
         monkeypatch.setenv(name, value)
@@ -143,7 +143,7 @@ def test_topic_echo_once(terminals: Terminals) -> None:
 
 
 def test_topic_plot_draws_until_ctrl_c(terminals: Terminals) -> None:
-    """In colours and dots, again and again in the same place; Ctrl-C is its normal end."""
+    """In colours and dots, repeatedly in the same place; Ctrl-C is its normal end."""
     command = terminals.open("topic", "plot", "/stamped.header.stamp.nanosec", "-w", "2")
     for _ in range(3):
         command.expect("[\u2801-\u28ff]")
@@ -371,7 +371,7 @@ def test_the_shell_is_offered_what_is_on_the_network(
 ) -> None:
     """The current names; after a name, its types or parameters.
 
-    `test_shells.py` has shells themselves ask, in processes of their own.
+    `test_shells.py` lets real shells ask, in separate processes.
     """
     if offered:  # nobody waits for it, and machines are busy
         monkeypatch.setattr(completion, "ANSWER_S", STARTED_S)
@@ -426,7 +426,7 @@ def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
     """The most common reason why no node is found, with a remedy that can be typed."""
     done = terminals.run("doctor", ROS_DOMAIN_ID="41")
 
-    assert done.returncode == 0  # it may be meant
+    assert done.returncode == 0  # a hint that it may be meant
     # Programs of other tests may be in others.
     assert re.search(r"Other domains here: .*\b42\b", done.stdout)
     assert "no other node in domain 41, but there are programs in domain 42" in done.stdout

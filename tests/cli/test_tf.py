@@ -1,4 +1,4 @@
-"""``aionode tf``, and what ``aionode doctor`` says about transforms."""
+"""``aionode tf``, and what ``aionode doctor`` reports about transforms."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ NUMBERS: dict[str, float | None] = dict.fromkeys(
 
 
 def test_echo_prints_as_tf2_echo() -> None:
-    """Also the nanoseconds, which tf2_echo does not fill up with zeros."""
+    """Including the nanoseconds, which tf2_echo does not pad with zeros."""
     received = transform("map", "base", 12.000005, (1.0, -2.0, 0.5), yaw=math.pi / 2)
     assert echo_text(received) == (
         "At time 12.5000\n"
@@ -52,7 +52,7 @@ def test_echo_prints_as_tf2_echo() -> None:
 
 
 def test_angles_at_the_poles_have_no_yaw() -> None:
-    """There, roll and yaw turn around the same axis."""
+    """At the poles, roll and yaw rotate about the same axis."""
     half = math.sqrt(0.5)
     upwards = transform("a", "b", 1.0, rotation=(0.0, half, 0.0, half))
     assert roll_pitch_yaw(matrix_of(pose_of(upwards))) == pytest.approx((0, math.pi / 2, 0))
@@ -61,7 +61,7 @@ def test_angles_at_the_poles_have_no_yaw() -> None:
 async def test_echo_waits_says_why_and_then_prints(
     tool: Node, node_factory: Callable[..., Node], screen: Any, running: Any
 ) -> None:
-    """At once when the transform is there, and then at the rate."""
+    """At once when the transform is available, and then at the rate."""
     sender = node_factory("sender")
     async with running(echo(tool, "map", "base", 50.0, output=screen.json_output)):
         TransformBroadcaster(sender).sendTransform(transform("map", "base", 3.0))
@@ -116,7 +116,7 @@ def asyncio_task(work: Any) -> Any:
 async def test_list_prints_each_frame_once(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Sorted, also those that are only parents."""
+    """Sorted, including frames that are only parents."""
     StaticTransformBroadcaster(node_factory("sender")).sendTransform(
         [transform("base", "camera"), transform("base", "arm")]
     )
@@ -167,7 +167,7 @@ def edge(parent: str, child: str, *, static: bool = False) -> FrameEdge:
 
 
 def test_a_loop_and_foreign_names_do_no_harm_to_a_picture() -> None:
-    """Frames are named by others."""
+    """Others name the frames."""
     edges = [edge("a", "b"), edge("b", "a"), edge("<x>", "y&", static=True)]
     assert as_text(edges).splitlines()[0] == "<x>"
     assert "b" in as_text(edges)
@@ -205,14 +205,14 @@ async def test_static_publishes_until_it_is_stopped(
 def test_static_refuses_what_every_buffer_would_refuse(
     frames: tuple[str, str], numbers: dict[str, float | None], text: str
 ) -> None:
-    """The sender learns of it, not only the log of each receiver."""
+    """The sender learns of it, rather than only the log of each receiver."""
     with pytest.raises(click.UsageError, match=text):
         static_transform(*frames, NUMBERS | numbers)
 
 
 @pytest.fixture
 def diagnose(tool: Node, manual_clock: ManualClock, screen: Any) -> Callable[..., Awaitable[int]]:
-    """Run the doctor: the time for which it listens is that of the manual clock."""
+    """Run the doctor, which listens for some time of the manual clock."""
 
     async def run(**options: Any) -> int:
         async with asyncio.TaskGroup() as tasks:
@@ -230,7 +230,7 @@ async def test_doctor_says_why_a_transform_is_missing(
     node_factory: Callable[..., Node],
     screen: Any,
 ) -> None:
-    """The reason of tf2, trees that are not connected, old stamps, and a name that is similar."""
+    """tf2's reason, unconnected trees, old stamps, and a similar name."""
     sender = node_factory("sender")
     TransformBroadcaster(sender)
     static = StaticTransformBroadcaster(sender)

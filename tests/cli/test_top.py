@@ -19,7 +19,7 @@ from aionode.testing import local_context, settle
 
 @pytest.fixture
 async def robot() -> Any:
-    """A node that hears itself on /numbers, five times before each look."""
+    """A node that receives from itself on /numbers, five times before each look."""
     async with Node("robot", context=local_context()) as node:
         publisher = node.create_publisher(Int32, "numbers", 10)
         node.create_subscription(Int32, "numbers", lambda _: None)
@@ -36,7 +36,7 @@ async def robot() -> Any:
 async def test_one_look_is_text_or_a_record(
     robot: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Numbers are those of the endpoints."""
+    """The numbers are those of the endpoints."""
     await robot.speak()  # type: ignore[attr-defined]  # as above
     await top(robot, output=Output(), once=True, interval=0.01)
     text = capsys.readouterr().out
@@ -58,7 +58,7 @@ async def test_the_live_view_needs_a_terminal(robot: Node) -> None:
 
 
 async def test_the_live_view_shows_filters_and_sorts(robot: Node) -> None:
-    """Driven by keys, as a person would."""
+    """Driven by keys, as by a person."""
     app = TopApp(robot, interval=1000.0)
     async with app.run_test(size=(160, 40)) as pilot:
         await robot.speak()  # type: ignore[attr-defined]  # as above

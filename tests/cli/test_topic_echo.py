@@ -164,7 +164,7 @@ async def test_no_arr_and_no_str_describe_what_they_leave_out(
 async def test_bytes_are_characters(
     options: dict[str, Any], shown: str, running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """ros2 prints a `byte` so, and a row of CSV has Python's form of it."""
+    """ros2 prints a `byte` this way, and a CSV row uses Python's notation."""
     message = ByteMultiArray(data=b"\x01a\xff")
 
     text = await echoed(running, tool, screen, talker, message, **options)
@@ -175,7 +175,7 @@ async def test_bytes_are_characters(
 async def test_flow_style_is_that_of_arrays(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """ros2 keeps a line for each field; only messages within arrays are in braces."""
+    """ros2 keeps one line per field; only messages within arrays are in braces."""
     message = JointTrajectory(
         joint_names=["a", "b"], points=[JointTrajectoryPoint(positions=[1.0, 2.0])]
     )
@@ -267,7 +267,7 @@ async def test_a_filter_that_fails_is_an_error_of_the_user(
 async def test_message_info_stands_in_front(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """Times and numbers of the message, as ros2 prints them."""
+    """Times and numbers of the message, as in ros2."""
     text = await echoed(running, tool, screen, talker, String(data="a"), with_info=True)
 
     head, body, _ = text.split("---\n")
@@ -353,7 +353,7 @@ async def test_two_types_need_a_choice(
 
 
 async def test_lost_messages_are_reported(running: Any, screen: Any) -> None:
-    """On stderr, as they are no data; the count is of all so far."""
+    """On stderr, since they are not data; the count is the total so far."""
     faulty = FaultyTransport(LocalTransport(), drop=0.5, seed=2)
     async with (
         Context(transport=faulty) as context,
@@ -376,7 +376,7 @@ async def test_lost_messages_are_reported(running: Any, screen: Any) -> None:
 async def test_a_content_filter_keeps_messages_away(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """In the language of DDS; publishers of other processes do not even send the others."""
+    """In the language of DDS; publishers in other processes do not even send the others."""
     text = await echoed(
         running,
         tool,

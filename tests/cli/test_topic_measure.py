@@ -1,4 +1,4 @@
-"""``aionode topic hz``, ``bw`` and ``delay``, in time that is stepped."""
+"""``aionode topic hz``, ``bw`` and ``delay``, in stepped time."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ async def test_hz_of_several_topics_is_a_table(
 async def test_hz_has_a_row_for_a_silent_topic(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """Otherwise it looks as if it had not been asked for."""
+    """Otherwise it looks as if it had not been requested."""
     talker.create_publisher(String, "/silent", 10)
 
     async with running(hz(tool, ["/silent", "/chatter"], output=screen.output)):
@@ -125,7 +125,7 @@ async def test_hz_has_a_row_for_a_silent_topic(
 async def test_hz_does_not_wait_for_a_topic_that_nobody_has(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """ros2 measures none until all are there."""
+    """ros2 measures none until all exist."""
     async with running(hz(tool, ["/late", "/chatter"], output=screen.json_output)):
         await manual_clock.advance(1.05)
         late, chatter = screen.records
@@ -146,7 +146,7 @@ async def test_hz_shows_that_a_topic_fell_silent(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """A rate of before would be taken for the present one; a slow topic keeps its row."""
+    """An old rate would be mistaken for the current one; a slow topic keeps its row."""
     slow = node_factory("slow")
     publisher = slow.create_publisher(String, "/slow", 10)
     slow.create_timer(3.0, lambda: publisher.publish(String()))
@@ -189,7 +189,7 @@ async def test_hz_counts_only_what_the_filter_lets_through(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """Then messages are decoded, as the filter looks inside."""
+    """Messages are decoded then, as the filter inspects them."""
     counter = node_factory("counter")
     publisher = counter.create_publisher(String, "/count", 10)
     texts = iter(range(1000))
@@ -268,7 +268,7 @@ async def test_bw_of_several_topics_is_a_record_for_each(
 async def test_all_topics_are_those_of_now(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any, verb: Any
 ) -> None:
-    """As --all of ros2 in Lyrical, which says how many they are."""
+    """Like --all of ros2 in Lyrical, which prints their number."""
     talker.create_publisher(String, "/other", 10)
 
     async with running(verb(tool, [], every=True, output=screen.output)):
@@ -285,7 +285,7 @@ async def test_all_topics_are_those_of_now(
     ("arguments", "problem"), [([], "--all measures all topics"), (["/a", "--all"], "not both")]
 )
 def test_names_or_all_topics_are_needed(verb: str, arguments: list[str], problem: str) -> None:
-    """Nothing is asked of the network before."""
+    """The network is not queried before."""
     done = CliRunner().invoke(measure.measuring, [verb, *arguments])
 
     assert done.exit_code == 2
@@ -346,7 +346,7 @@ async def test_a_stamp_that_is_no_time_is_a_delay_nevertheless(
     screen: Any,
     stamp: TimeMsg,
 ) -> None:
-    """The command reports the difference to any stamp a driver may write."""
+    """The command reports the difference from any stamp that a driver may write."""
     publisher = node_factory("camera").create_publisher(TwistStamped, "/stamped", 10)
 
     async with running(delay(tool, "/stamped", output=screen.json_output)):

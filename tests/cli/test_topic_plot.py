@@ -54,7 +54,7 @@ async def wheels(node_factory: Callable[..., Node], manual_clock: ManualClock) -
 async def test_a_chart_of_each_field_is_printed_at_the_end(
     running: Any, tool: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """Where the output is no terminal, Ctrl-C prints what has arrived."""
+    """If the output is not a terminal, Ctrl-C prints what has arrived."""
     async with running(plot(tool, ["/cmd_vel.linear.x", "/level.data"], output=screen.output)):
         await manual_clock.advance(3.05)
 
@@ -68,7 +68,7 @@ async def test_a_chart_of_each_field_is_printed_at_the_end(
 async def test_it_ends_after_a_duration_with_a_picture(
     running: Any, tool: Node, manual_clock: ManualClock, screen: Any, tmp_path: Path
 ) -> None:
-    """A topic that nobody publishes does not hold it up."""
+    """A topic that nobody publishes does not delay it."""
     file = tmp_path / "plot.png"
     fields = ["/cmd_vel.linear.x", "/nothing.data"]
     doing = plot(tool, fields, output=screen.output, duration=0.5, png=str(file))
@@ -107,7 +107,7 @@ async def test_each_value_is_a_record_for_programs(
 async def test_what_cannot_be_plotted_is_named(
     tool: Node, manual_clock: ManualClock, running: Any, screen: Any, field: str, problem: str
 ) -> None:
-    """With what fits."""
+    """With the valid options."""
     with pytest.raises(CommandError, match=problem):
         await asyncio.gather(plot(tool, [field], output=screen.output), manual_clock.advance(1.0))
 
@@ -115,7 +115,7 @@ async def test_what_cannot_be_plotted_is_named(
 async def test_a_text_is_no_number(
     node_factory: Callable[..., Node], tool: Node, screen: Any
 ) -> None:
-    """Also one that could be read as a number."""
+    """Even one that could be parsed as a number."""
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = node_factory("talker").create_publisher(String, "/text", latched)
 
@@ -155,13 +155,13 @@ async def test_a_recording_is_plotted_as_a_whole(
 async def test_a_topic_that_a_recording_has_not_is_named(
     tool: Node, screen: Any, recording: Path
 ) -> None:
-    """With those that it has."""
+    """With those that it contains."""
     with pytest.raises(CommandError, match="nothing of /odom in it; there are /scan"):
         await plot(tool, ["/odom.x"], output=screen.output, bag_path=str(recording))
 
 
 async def test_a_picture_without_a_folder_is_refused_at_once(tool: Node, screen: Any) -> None:
-    """Not after the minutes for which it was collected."""
+    """Not only after minutes of collecting data."""
     with pytest.raises(CommandError, match="there is no folder"):
         await plot(tool, ["/a.b"], output=screen.output, png="/nowhere/at/all.png")
 
@@ -174,7 +174,7 @@ async def test_a_picture_without_a_folder_is_refused_at_once(tool: Node, screen:
 def test_any_numbers_are_drawn_within_their_space(
     points: list[tuple[int, float]], width: int, height: int
 ) -> None:
-    """Also none, equal ones, infinities, and the largest there are."""
+    """Also none, equal ones, infinities, and the largest possible ones."""
     line = Line("name")
     line.points.extend(points)
     pieces = chart([line, line], width=width, height=height, start_ns=0, end_ns=10 * S)
@@ -185,7 +185,7 @@ def test_any_numbers_are_drawn_within_their_space(
 
 
 def test_a_line_rises_from_the_lower_left_to_the_upper_right() -> None:
-    """And is one line, without gaps."""
+    """As one line, without gaps."""
     line = Line("name")
     line.points.extend([(0, 0.0), (S, 1.0)])
     pieces = chart([line], width=20, height=12, start_ns=0, end_ns=S)

@@ -54,7 +54,7 @@ async def test_a_short_type_name_is_understood(tool: Node, heard: list[Any], scr
 async def test_the_rate_is_kept_on_a_grid(
     running: Any, tool: Node, heard: list[Any], manual_clock: ManualClock, screen: Any
 ) -> None:
-    """ros2 publishes late by what printing takes, so that 10 Hz are 9.8."""
+    """ros2 publishes late by the time that printing takes, so that 10 Hz become 9.8."""
     work = pub(tool, "/golden", "std_msgs/msg/String", rate=10.0, output=screen.output)
     async with running(work):
         await manual_clock.advance(1.0)
@@ -65,7 +65,7 @@ async def test_the_rate_is_kept_on_a_grid(
 async def test_times_ends_after_so_many(
     running: Any, tool: Node, heard: list[Any], manual_clock: ManualClock, screen: Any
 ) -> None:
-    """The node stays for keep-alive seconds, so that slow readers get the last one."""
+    """The node stays for keep-alive seconds, so that slow readers get the last message."""
     work = pub(
         tool, "/golden", "std_msgs/msg/String", times=2, rate=10.0, keep_alive_s=0.1,
         print_nth=2, output=screen.output,

@@ -106,7 +106,7 @@ async def test_call_learns_a_service_type(
 async def test_send_goal_learns_an_action_type(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The tutorial's /navigate_to has a type that exists as a Python class only."""
+    """The tutorial's /navigate_to has a type that exists only as a Python class."""
 
     async def walk(goal: Any) -> Walk.Result:
         goal.succeed()
@@ -144,7 +144,7 @@ class Drive(ActionType, typename="foreign/action/Drive", by_name=False):
 async def test_a_goal_of_defaults_has_those_that_the_server_describes(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """With a tolerance of 0.0 in their place, a robot hunted its goal for ever."""
+    """With a tolerance of 0.0 instead, a robot hunted its goal forever."""
     goals: list[Any] = []
 
     async def drive(goal: Any) -> Drive.Result:
@@ -163,7 +163,7 @@ async def test_a_goal_of_defaults_has_those_that_the_server_describes(
 
 
 async def test_commands_describe_the_types_that_they_use(node_factory: Any) -> None:
-    """Of a topic that only a command listens to, no other node knows the type."""
+    """If only a command listens to a topic, no other node knows its type."""
     other = node_factory("other")
     async with make_node(other.context) as own:
         own.create_subscription(Words, "/words")
@@ -209,7 +209,7 @@ async def test_an_action_that_is_known_is_not_asked_for(tool: Node) -> None:
 
 
 def silence() -> Any:
-    """Return the parameter with which a node does not describe its types."""
+    """Return the parameter that makes a node not describe its types."""
     from aionode.parameter import Parameter
 
     return Parameter("start_type_description_service", value=False)

@@ -15,7 +15,7 @@ from aionode.interfaces.std_msgs.msg import Int32
 
 
 async def test_it_prints_a_chain_or_records(capsys: pytest.CaptureFixture[str]) -> None:
-    """From the message back to where it began, with the times."""
+    """From the message back to its origin, with the times."""
     async with (
         Context(transport="local", causes=True) as context,
         Node("planner", context=context) as node,
@@ -48,7 +48,7 @@ async def test_it_prints_a_chain_or_records(capsys: pytest.CaptureFixture[str]) 
 async def test_an_unknown_name_is_an_error_and_a_silent_topic_is_said(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The exit status is 1 where nothing is known."""
+    """The exit status is 1 if nothing is known."""
     async with (
         Context(transport="local", causes=True) as context,
         Node("planner", context=context) as node,

@@ -45,7 +45,7 @@ def test_two_messages_are_one_too_many() -> None:
     ],
 )
 def test_a_missing_blank_is_named(text: str, key: str, meant: str) -> None:
-    """YAML takes such a pair for one word, so the error spoke of a field ``order:3``."""
+    """YAML parses such a pair as one word, so the error mentioned a field ``order:3``."""
     with pytest.raises(CommandError) as raised:
         message_from_yaml(PoseStamped, text)
 

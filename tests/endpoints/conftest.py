@@ -12,7 +12,7 @@ from aionode.node import Node
 
 @pytest.fixture
 def node_factory(node_factory: Callable[..., Node]) -> Callable[..., Node]:
-    """Make nodes without the log's topic and the services of parameters.
+    """Create nodes without the log's topic and the parameter services.
 
     These take half of the time in which a node is made; tests/node is about them.
     """

@@ -115,7 +115,7 @@ every_wait = pytest.mark.parametrize("wait", WAITS)
 
 @pytest.fixture(autouse=True)
 def others(node: Node) -> None:
-    """Have a service that does not answer, and a reader that does not read."""
+    """A service that does not answer, and a reader that does not read."""
 
     async def never(_request: AddTwoInts.Request) -> AddTwoInts.Response:
         await asyncio.Event().wait()
@@ -126,7 +126,7 @@ def others(node: Node) -> None:
 
 
 async def ended(waiting: asyncio.Task[object]) -> BaseException | None:
-    """Return what `waiting` has raised."""
+    """Return the exception that `waiting` has raised."""
     with pytest.raises(END):
         await asyncio.wait_for(waiting, 5)
     return None if waiting.cancelled() else waiting.exception()
@@ -136,7 +136,7 @@ async def ended(waiting: asyncio.Task[object]) -> BaseException | None:
 async def test_a_task_of_others_gets_an_error_with_that_of_the_node(
     context: Context, wait: Wait
 ) -> None:
-    """Nobody has cancelled the task: a TaskGroup would drop it without a word."""
+    """Nobody has cancelled the task: a TaskGroup would drop it silently."""
     planner = Node("planner", context=context)
     may_fail = asyncio.Event()
 
@@ -160,7 +160,7 @@ async def test_a_task_of_others_gets_an_error_with_that_of_the_node(
 
 @pytest.mark.parametrize("wait", [*WAITS, receive])
 async def test_a_node_that_ends_well_is_no_cause(context: Context, wait: Wait) -> None:
-    """A task that works with a node of another owner learns that it has gone."""
+    """A task that works with another owner's node learns that it has gone."""
     async with Node("planner", context=context) as planner:
         waiting = asyncio.get_running_loop().create_task(wait(planner))
         await settle()
@@ -207,7 +207,7 @@ async def test_a_callback_is_cancelled(context: Context, wait: Wait) -> None:
 async def test_a_cancellation_in_the_same_moment_counts(
     context: Context, wait: Wait, *, cancelled_first: bool
 ) -> None:
-    """Whoever cancels a task relies on it, also when what it waits for is destroyed just then."""
+    """The one who cancels a task relies on it, even if what it waits for is destroyed just then."""
     async with Node("planner", context=context) as planner:
         waiting = asyncio.get_running_loop().create_task(wait(planner))
         await settle()
@@ -223,7 +223,7 @@ async def test_a_cancellation_in_the_same_moment_counts(
 
 
 async def test_iterations_end(context: Context) -> None:
-    """What has come is read first, also when the node has failed."""
+    """Items that have arrived are read first, even if the node has failed."""
     async with Node("planner", context=context) as planner:
         words = planner.create_subscription(String, "words")
         rate = planner.create_rate(1)

@@ -44,7 +44,7 @@ async def test_call_async_is_a_future_that_can_be_awaited(node: Node) -> None:
 
 
 async def test_a_future_tells_of_its_end_as_rclpys_does(node: Node) -> None:
-    """`add_done_callback`, `done` and `result` are how rclpy's programs use it."""
+    """Programs of rclpy use `add_done_callback`, `done` and `result`."""
     node.create_service(AddTwoInts, "add", add)
     sums: list[int] = []
 
@@ -73,7 +73,7 @@ async def test_a_future_raises_what_call_raises(node: Node) -> None:
 
 
 async def test_cancelling_the_future_forgets_the_call(node: Node) -> None:
-    """As giving up `await client.call()` does."""
+    """Like abandoning `await client.call()`."""
     client = node.create_client(AddTwoInts, "add")
     future = client.call_async(Request())
     await settle()
@@ -110,7 +110,7 @@ async def test_a_call_of_a_constructor_is_made_once_the_node_runs(context: Conte
 
 @pytest.mark.parametrize("runs", [False, True])
 async def test_the_end_of_the_client_ends_its_futures(context: Context, *, runs: bool) -> None:
-    """No task waits for ever, whether the call had begun or not."""
+    """No task waits forever, whether the call had started or not."""
     node = Node("short", context=context)
     future = node.create_client(AddTwoInts, "add").call_async(Request())
     if runs:
@@ -223,14 +223,14 @@ WAITS: dict[str, Callable[[Node], Any]] = {
 
 @pytest.mark.parametrize("name", list(WAITS))
 async def test_a_wait_that_is_not_awaited_has_no_truth_value(node: Node, name: str) -> None:
-    """As a coroutine is true, `while not client.wait_for_service():` would go on at once."""
+    """A coroutine is true, so `while not client.wait_for_service():` would continue at once."""
     with pytest.raises(TypeError, match=rf"{name}\(\) was not awaited.*while not await"):
         bool(WAITS[name](node))
 
 
 @pytest.mark.parametrize("name", list(WAITS))
 async def test_a_wait_can_be_a_task(node: Node, name: str) -> None:
-    """It is a coroutine in all else: a TaskGroup takes it, and cancelling works."""
+    """It is a coroutine in all other respects: a TaskGroup accepts it, and cancelling works."""
     async with asyncio.TaskGroup() as tasks:
         task = tasks.create_task(WAITS[name](node))
         await settle()

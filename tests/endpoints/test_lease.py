@@ -1,4 +1,4 @@
-"""Leases for commands, in one process: who may publish, and when the stop goes out."""
+"""Leases for commands, in one process: who may publish, and when the stop is sent."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ STOP = Int8(data=0)
 
 
 class Robot:
-    """A publisher of commands, and what the wheels got."""
+    """A publisher of commands, and what the wheels received."""
 
     def __init__(self, clock: ManualClock, context: Context, node: Node) -> None:
         self.clock = clock
@@ -49,14 +49,14 @@ class Robot:
         self.speed: Publisher[Int8] = node.create_publisher(Int8, "speed", 100)
 
     async def took(self) -> list[int]:
-        """Return what the wheels have got."""
+        """Return what the wheels have received."""
         await settle()
         return self.got
 
 
 @pytest.fixture
 async def robot() -> AsyncIterator[Robot]:
-    """A robot whose time a test sets."""
+    """A robot whose time is set by the test."""
     clock = ManualClock()
     async with local_context(clock=clock) as context, Node("commander", context=context) as node:
         robot = Robot(clock, context, node)
@@ -74,7 +74,7 @@ async def hold(publisher: Publisher[Int8], body: Body, **options: Any) -> None:
 
 
 def begin(work: Coroutine[Any, Any, T]) -> asyncio.Task[T]:
-    """Begin a task, whose end the test waits for."""
+    """Start a task, whose end the test waits for."""
     return asyncio.get_running_loop().create_task(work)
 
 
@@ -95,7 +95,7 @@ async def test_the_stop_goes_out_when_the_block_ends(robot: Robot) -> None:
 
 
 async def test_the_stop_goes_out_without_a_command(robot: Robot) -> None:
-    """Who takes the right to command says how it ends."""
+    """Taking the right to command includes defining its end."""
     async with robot.speed.lease(stop=STOP):
         pass
     assert await robot.took() == [0]
@@ -124,7 +124,7 @@ async def test_the_stop_goes_out_when_the_body_fails(robot: Robot) -> None:
 
 
 async def test_the_stop_goes_out_when_the_block_is_thrown_away(robot: Robot) -> None:
-    """Its coroutine is closed, in which nothing can be awaited."""
+    """Its coroutine is closed, so that nothing can be awaited in it."""
     block = hold(robot.speed, wait)
     block.send(None)
     block.close()
@@ -132,7 +132,7 @@ async def test_the_stop_goes_out_when_the_block_is_thrown_away(robot: Robot) -> 
 
 
 async def test_a_lease_ends_with_its_block(robot: Robot) -> None:
-    """Whoever still has it sends nothing."""
+    """Keeping a reference to it does not help."""
     async with robot.speed.lease(stop=STOP) as lease:
         assert lease.held
     with pytest.raises(LeaseExpiredError, match="its block has ended"):
@@ -145,7 +145,7 @@ async def test_a_lease_ends_with_its_block(robot: Robot) -> None:
 
 
 async def test_a_silent_holder_loses_the_lease(robot: Robot) -> None:
-    """First the stop goes out, then the block is cancelled."""
+    """First the stop is sent, then the block is cancelled."""
     order: list[object] = []
 
     async def note(lease: CommandLease[Int8]) -> None:
@@ -176,7 +176,7 @@ async def test_the_time_to_live_counts_from_the_first_command(robot: Robot) -> N
 
 
 async def test_each_command_begins_the_time_to_live_anew(robot: Robot) -> None:
-    """A holder that goes on commanding keeps the lease."""
+    """A holder that continues to command keeps the lease."""
     async with robot.speed.lease(stop=STOP, ttl_sec=0.3) as lease:
         for number in range(1, 6):
             lease.publish(Int8(data=number))
@@ -198,7 +198,7 @@ async def test_a_command_that_comes_too_late_is_not_sent(robot: Robot) -> None:
 
 
 class FreezingClock(ManualClock):
-    """Time in which a process is frozen once, in the middle of what reads the system time.
+    """Time in which a process is frozen once, in the middle of reading the system time.
 
     Attributes:
         freezes_s: For how long, at the next reading.
@@ -214,7 +214,7 @@ class FreezingClock(ManualClock):
 
 
 async def test_a_holder_that_is_frozen_while_it_publishes_loses_the_lease() -> None:
-    """Its command is from before, and so is its sign of life: no other one may follow."""
+    """Its command is from before, and so is its sign of life: no further command may follow."""
     clock = FreezingClock()
     async with local_context(clock=clock) as context, Node("commander", context=context) as node:
         robot = Robot(clock, context, node)
@@ -250,7 +250,7 @@ async def test_a_holder_that_swallows_the_refusal_is_cancelled(robot: Robot) -> 
 
 
 async def test_a_cancellation_of_others_passes(robot: Robot) -> None:
-    """It is not taken for that of the time to live, even in the same turn of the loop."""
+    """It is not mistaken for that of the time to live, even in the same loop iteration."""
     holder = begin(hold(robot.speed, wait, ttl_sec=0.3))
     await robot.clock.advance(0.1)
 
@@ -265,7 +265,7 @@ async def test_a_cancellation_of_others_passes(robot: Robot) -> None:
 
 
 async def test_a_timeout_around_the_lease_works(robot: Robot) -> None:
-    """Both cancel the block; each raises what is its own."""
+    """Both cancel the block; each raises its own error."""
     with pytest.raises(TimeoutError) as raised:
         async with asyncio.timeout(0.01):
             await hold(robot.speed, wait)
@@ -289,7 +289,7 @@ async def test_an_error_of_the_body_is_not_hidden(robot: Robot) -> None:
 
 
 async def test_the_publisher_is_free_after_the_stop(robot: Robot) -> None:
-    """A holder that cleans up for long does not keep the next one from commanding."""
+    """A holder that cleans up for long does not prevent the next one from commanding."""
     cleaned = asyncio.Event()
 
     async def slow(lease: CommandLease[Int8]) -> None:
@@ -349,7 +349,7 @@ async def test_a_clock_that_stands_still_ends_the_lease(robot: Robot) -> None:
 
 
 async def test_a_clock_that_jumps_back_lengthens_nothing(robot: Robot) -> None:
-    """What has passed has passed, as when a recording begins again."""
+    """Time that has passed has passed, even if a recording starts again."""
     clock = ROSClock(time_base=robot.clock)
     clock.set_ros_time_active(True)
     show(clock, 5)
@@ -385,11 +385,11 @@ async def test_a_lease_leaves_its_clock_alone_afterwards(robot: Robot) -> None:
     assert not leases
 
 
-# Who else ends it
+# What else ends it
 
 
 async def test_a_destroyed_publisher_sends_the_stop_last(robot: Robot) -> None:
-    """Its holder may be anything, and is told when it publishes."""
+    """Its holder may be anyone, and gets an error when it publishes."""
     async with robot.speed.lease(stop=STOP) as lease:
         lease.publish(Int8(data=1))
         robot.speed.destroy()
@@ -399,7 +399,7 @@ async def test_a_destroyed_publisher_sends_the_stop_last(robot: Robot) -> None:
 
 
 async def test_a_destroyed_node_sends_the_stop_at_once(robot: Robot) -> None:
-    """Its callbacks may take seconds to unwind; the robot does not drive meanwhile."""
+    """Its callbacks may take seconds to unwind; the robot must not drive meanwhile."""
     slow = asyncio.Event()
 
     async def unwind(_: String) -> None:
@@ -435,7 +435,7 @@ async def test_a_context_that_shuts_down_sends_the_stop(robot: Robot) -> None:
 
 @pytest.mark.parametrize("concurrent", [False, True])
 async def test_a_node_that_fails_sends_the_stop_at_once(concurrent: bool) -> None:
-    """The holder is a task of somebody else, and the node's body unwinds slowly."""
+    """The holder is somebody else's task, and the node's body unwinds slowly."""
     unwound = asyncio.Event()
     got: list[int] = []
     async with local_context() as context, Node("wheels", context=context) as wheels:
@@ -511,7 +511,7 @@ async def test_all_stops_can_be_sent_from_a_thread(robot: Robot) -> None:
 
 
 async def test_only_the_lease_publishes_while_it_is_held(robot: Robot) -> None:
-    """Also where a bound method was kept; afterwards the publisher works as before."""
+    """Even with a bound method kept from before; afterwards the publisher works as before."""
     publish = robot.speed.publish
     async with robot.speed.lease(stop=STOP) as lease:
         for _ in range(2):
@@ -524,7 +524,7 @@ async def test_only_the_lease_publishes_while_it_is_held(robot: Robot) -> None:
 
 
 async def test_a_second_lease_is_refused(robot: Robot) -> None:
-    """It is known at once, and the first one is not disturbed."""
+    """This is known at once, and the first one is not disturbed."""
     async with robot.speed.lease(stop=STOP) as lease:
         with pytest.raises(LeaseHeldError):
             await robot.speed.lease(stop=STOP).__aenter__()
@@ -584,7 +584,7 @@ async def test_a_block_in_another_loop_holds_a_lease(robot: Robot) -> None:
 
 
 async def test_the_stop_is_that_of_the_beginning(robot: Robot) -> None:
-    """Whoever changes the object afterwards does not change the stop."""
+    """Changing the object afterwards does not change the stop."""
     stop = Int8(data=3)
     async with robot.speed.lease(stop=stop):
         stop.data = 100
@@ -592,7 +592,7 @@ async def test_the_stop_is_that_of_the_beginning(robot: Robot) -> None:
 
 
 async def test_the_stop_may_be_given_as_bytes(robot: Robot) -> None:
-    """As what is published."""
+    """Like published messages."""
     async with robot.speed.lease(stop=cdr.encode(Int8(data=4))) as lease:
         lease.publish(cdr.encode(Int8(data=5)))
     assert await robot.took() == [5, 4]
@@ -663,7 +663,7 @@ async def test_a_full_keep_all_subscription_gets_the_stop(robot: Robot) -> None:
 
 
 async def test_a_stop_is_not_held_back_behind_a_message_that_never_comes() -> None:
-    """Of a network that reorders, it is the last message."""
+    """In a network that reorders, it is the last message."""
     transport = FaultyTransport(LocalTransport(), reorder=1.0)
     async with Context(transport=transport) as context, Node("one", context=context) as node:
         reader = node.create_subscription(Int8, "speed", None, 10)

@@ -1,4 +1,4 @@
-"""The event loop, a thread and handlers of signals race for the end of a lease."""
+"""The event loop, a thread and signal handlers race for the end of a lease."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ STOP = Int8(data=0)
 
 
 class Recording(LocalTransport):
-    """A transport that notes what its writers are told, in order.
+    """A transport that records the calls of its writers, in order.
 
     Attributes:
         told: ``command``, ``stop`` and ``past loop``, each with its number.
@@ -44,14 +44,14 @@ class Recording(LocalTransport):
     def create_writer(
         self, endpoint: EndpointInfo, msg_type: type[Any]
     ) -> Writer:  # the topic alone
-        """Note what a publisher of commands does."""
+        """Record the calls of a publisher of commands."""
         if endpoint.name == "/speed":
             return RecordingWriter(self.told)
         return super().create_writer(endpoint, msg_type)
 
 
 class RecordingWriter(Writer):
-    """Notes messages, for which it takes a while: another thread gets its turn within."""
+    """Records messages slowly, so that another thread runs in between."""
 
     active = True
 
@@ -59,32 +59,32 @@ class RecordingWriter(Writer):
         self.told = told
 
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # its number will do
-        """Note a command."""
+        """Record a command."""
         threading.Event().wait(0.0005)
         self.told.append(("command", sequence))
 
     def prepare_stop(
         self, stop: Any, is_last: Callable[[], bool]
     ) -> StopSender:  # its number will do
-        """Return what notes the stop."""
+        """Return a sender that records the stop."""
         return RecordingStop(self.told)
 
     def close(self) -> None:
-        """Keep the notes."""
+        """Keep the records."""
 
 
 class RecordingStop(StopSender):
-    """Notes the stop."""
+    """Records the stop."""
 
     def __init__(self, told: list[tuple[str, int]]) -> None:
         self.told = told
 
     def send(self, sequence: int, source_ns: int) -> None:  # its number will do
-        """Note it, on the loop."""
+        """Record it, on the loop."""
         self.told.append(("stop", sequence))
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:  # the same
-        """Note it, in a thread."""
+        """Record it, in a thread."""
         self.told.append(("past loop", sequence))
 
 
@@ -101,7 +101,7 @@ def assert_in_order(told: list[tuple[str, int]]) -> str:
 
 
 async def hold(lease: CommandLease[Int8], randomly: random.Random) -> None:
-    """Publish, and now and then block the loop for about the time to live."""
+    """Publish, and occasionally block the loop for about the time to live."""
     while True:
         lease.publish(Int8(data=1))
         if randomly.random() < 0.3:
@@ -110,7 +110,7 @@ async def hold(lease: CommandLease[Int8], randomly: random.Random) -> None:
 
 
 async def test_of_loop_and_thread_one_sends_the_stop(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whoever notices first, and no command follows it."""
+    """Whoever notices first sends it, and no command follows it."""
     monkeypatch.setattr(lease_watch, "GRACE_NS", 0)
     monkeypatch.setattr(lease_watch, "AGAIN_S", 0.0)
     randomly = random.Random(1)  # noqa: S311  # no secrets
@@ -146,7 +146,7 @@ async def test_a_thread_that_sends_all_stops_races_with_commands() -> None:
 
 
 async def test_a_signal_handler_that_ends_leases_is_followed_by_the_stop() -> None:
-    """It runs within `publish`, whose command is finished behind it: then the stop comes again."""
+    """It runs within `publish`, whose command is completed after it: then the stop is repeated."""
     transport = Recording()
     before = signal.signal(signal.SIGALRM, lambda *_: send_stops(0))
     try:

@@ -33,7 +33,7 @@ Response = AddTwoInts.Response
 
 
 def add(request: Request, response: Response) -> Response:
-    """Answer as the tutorial's server does."""
+    """Answer like the tutorial's server."""
     response.sum = request.a + request.b
     return response
 
@@ -137,7 +137,7 @@ async def test_a_handler_may_call_another_service(node: Node) -> None:
 async def test_every_server_of_a_name_answers_and_the_first_counts(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """As in ROS 2: what the others say is ignored."""
+    """As in ROS 2: later answers are ignored."""
     served: list[str] = []
 
     def answer(name: str) -> Callable[[Request], Response]:
@@ -178,7 +178,7 @@ async def test_requests_are_snapshots(node: Node) -> None:
 
 
 async def test_a_call_without_a_server_ends_by_timeout_and_says_why(node: Node) -> None:
-    """With how many servers were matched."""
+    """Including how many servers were matched."""
     client = node.create_client(AddTwoInts, "add")
     with pytest.raises(RequestTimeoutError, match="/add: no reply in 0 s; no server is matched"):
         await client.call(Request(), timeout_sec=0)
@@ -187,7 +187,7 @@ async def test_a_call_without_a_server_ends_by_timeout_and_says_why(node: Node) 
 async def test_a_timeout_of_asyncio_says_why_too(
     node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """In a note on what interrupted the call, and in the log."""
+    """In a note on the exception that interrupted the call, and in the log."""
     client = node.create_client(AddTwoInts, "add")
     with pytest.raises(TimeoutError) as caught:
         async with asyncio.timeout(0):
@@ -404,7 +404,7 @@ async def test_a_request_that_was_given_up_before_its_turn_is_not_served(node: N
 
 
 async def test_a_late_reply_does_nothing(manual_clock: Any) -> None:
-    """Neither after a timeout, nor after a cancellation in the very moment that it arrives."""
+    """Neither after a timeout, nor after a cancellation at the very moment of its arrival."""
     transport = FaultyTransport(LocalTransport(), delay=1.0, clock=manual_clock)
     context = Context(transport=transport)
     async with Node("node", context=context) as node:
@@ -424,7 +424,7 @@ async def test_a_late_reply_does_nothing(manual_clock: Any) -> None:
 
 
 async def test_destroying_a_client_ends_its_calls(node: Node) -> None:
-    """Those that wait for them are told why."""
+    """Those who wait for them get the reason."""
     node.create_service(AddTwoInts, "add", Gate())
     client = node.create_client(AddTwoInts, "add")
     call = asyncio.get_running_loop().create_task(client.call(Request()))
@@ -437,7 +437,7 @@ async def test_destroying_a_client_ends_its_calls(node: Node) -> None:
 
 
 async def test_destroying_a_client_ends_its_waits(node: Node) -> None:
-    """Otherwise the tasks would wait for ever."""
+    """Otherwise the tasks would wait forever."""
     client = node.create_client(AddTwoInts, "add")
     waiting = asyncio.get_running_loop().create_task(client.wait_for_service())
     await settle()
@@ -556,7 +556,7 @@ async def test_too_many_waiting_requests_are_refused_with_an_error(
 
 
 async def test_a_destroyed_client_says_so(node: Node) -> None:
-    """Also when one waits for its service."""
+    """Even while waiting for its service."""
     client = node.create_client(AddTwoInts, "add")
     client.destroy()
     with pytest.raises(EntityDestroyedError):

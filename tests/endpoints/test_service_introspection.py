@@ -1,4 +1,4 @@
-"""Service introspection: what clients and servers publish about requests and responses."""
+"""Service introspection: events that clients and servers publish about requests and responses."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ async def test_each_side_has_a_state_of_its_own(
     server: ServiceIntrospectionState,
     types: list[int],
 ) -> None:
-    """A system is often watched from one side only."""
+    """Often only one side of a system is watched."""
     bench.configure(client, server)
 
     assert [event.info.event_type for event in await bench.call()] == types
@@ -187,7 +187,7 @@ async def test_events_follow_the_clock_that_was_given(bench: Bench) -> None:
 async def test_a_full_reader_does_not_disturb_the_calls(
     node: Node, node_factory: Callable[..., Node], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A reader that keeps all events and reads none makes `publish` refuse; the call goes on."""
+    """`publish` refuses if a reader that keeps all events reads none; the call continues."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
     node_factory("reader").create_subscription(
         AddTwoInts.Event, TOPIC, qos_profile=QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -216,7 +216,7 @@ async def test_the_publisher_goes_with_its_owner(bench: Bench) -> None:
 
 
 async def test_invalid_arguments_are_refused(bench: Bench) -> None:
-    """With what fits."""
+    """With the valid options."""
     with pytest.raises(ValueError, match="7 is not a valid ServiceIntrospectionState"):
         bench.server.configure_introspection(bench.node.get_clock(), 10, 7)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="clock is None; expected a clock"):

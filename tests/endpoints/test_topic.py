@@ -86,7 +86,7 @@ async def test_receive_takes_one_message(node: Node) -> None:
 
 
 async def test_receive_on_a_destroyed_and_empty_subscription_is_an_error(node: Node) -> None:
-    """It would wait for ever."""
+    """It would wait forever."""
     reader = node.create_subscription(String, "words")
     reader.destroy()
     with pytest.raises(EntityDestroyedError, match="subscription of /words"):
@@ -217,7 +217,7 @@ async def test_raw_subscriptions_get_cdr_bytes_in_process_too(node: Node) -> Non
 async def test_a_direct_subscription_takes_messages_within_publish_until_it_is_destroyed(
     node: Node,
 ) -> None:
-    """A recorder puts them elsewhere at once: no queue, no task and no loop has a part in it."""
+    """A recorder stores them elsewhere at once: no queue, no task and no loop is involved."""
     taken: list[tuple[bytes, int]] = []
     subscription = direct_subscription(
         node,
@@ -240,7 +240,7 @@ async def test_a_direct_subscription_takes_messages_within_publish_until_it_is_d
 async def test_a_direct_subscription_gets_a_large_message_in_parts_without_a_copy(
     node: Node,
 ) -> None:
-    """A copy of a large image takes the event loop milliseconds."""
+    """Copying a large image takes the event loop milliseconds."""
     taken: list[Parts] = []
     direct_subscription(
         node, UInt8MultiArray, "pixels", lambda raw, *_: taken.append(raw), QoSProfile(depth=1)
@@ -256,7 +256,7 @@ async def test_a_direct_subscription_gets_a_large_message_in_parts_without_a_cop
 async def test_a_direct_subscription_counts_what_is_missing_and_leaves_out_what_has_expired(
     node: Node,
 ) -> None:
-    """It is past the queue, and not past the numbers of publishers and the policies."""
+    """It bypasses the queue, but not the publishers' numbers and the policies."""
     taken: list[int] = []
     subscription = direct_subscription(
         node,
@@ -299,7 +299,7 @@ async def test_a_slow_reader_keeps_the_newest_and_counts_the_rest(node: Node) ->
 
 
 async def test_a_depth_of_zero_means_42(node: Node) -> None:
-    """As rmw_zenoh takes it; a warning says so, as it does in rclpy."""
+    """As in rmw_zenoh; a warning says so, like in rclpy."""
     with pytest.warns(UserWarning, match="A zero depth"):
         reader = node.create_subscription(Int32, "numbers", qos_profile=0)
     publisher = node.create_publisher(Int32, "numbers", 10)
@@ -342,7 +342,7 @@ async def test_a_best_effort_keep_all_reader_drops_the_newest(
 
 
 async def test_drain_waits_for_room(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A publisher that must not lose anything goes at the pace of its reader."""
+    """A publisher that must not lose anything adapts to the pace of its reader."""
     monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 2)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
@@ -372,7 +372,7 @@ async def test_drain_ends_when_the_full_reader_goes(
 
 
 async def test_what_a_destroyed_callback_did_not_get_is_counted(context: Context) -> None:
-    """Received + dropped is what was sent, also at the end."""
+    """Received + dropped equals sent, even at the end."""
     node = Node("node", context=context)
     subscription = node.create_subscription(String, "words", lambda msg: None)
     fill(node.create_publisher(String, "words", 10), "a", "b")
@@ -433,7 +433,7 @@ async def test_incompatible_profiles_do_not_match_and_are_reported_once(
 async def test_different_types_on_one_topic_are_reported(
     node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """With both types, and what would help."""
+    """With both types, and a remedy."""
     node.create_subscription(String, "words", lambda msg: None)
     node.create_publisher(Int32, "words", 10).publish(Int32())
     error = capfd.readouterr().err
@@ -456,7 +456,7 @@ async def test_wait_for_subscribers_is_woken_by_the_subscription(node: Node) -> 
 async def test_destroying_a_publisher_ends_waits_for_its_subscribers(
     node: Node,
 ) -> None:
-    """Otherwise they would wait for ever."""
+    """Otherwise they would wait forever."""
     publisher = node.create_publisher(String, "words", 10)
     waiting = asyncio.get_running_loop().create_task(publisher.wait_for_subscribers(1))
     await settle()
@@ -469,7 +469,7 @@ async def test_destroying_a_publisher_ends_waits_for_its_subscribers(
 
 
 async def test_publishing_another_type_is_an_error(node: Node) -> None:
-    """It names what was given and what fits."""
+    """It names what was given and what is expected."""
     publisher = node.create_publisher(String, "words", 10)
     with pytest.raises(TypeError, match="std_msgs/msg/String"):
         publisher.publish(Int32(data=1))  # type: ignore[arg-type]  # the mistake

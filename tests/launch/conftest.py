@@ -25,11 +25,11 @@ class Files:
         return str(file)
 
     def plan(self, name: str, text: str, **arguments: str) -> list[dict[str, Any]]:
-        """Return what a file with this text starts."""
+        """Return the plan of a file with this text."""
         return list(Plan(self.write(name, text), arguments).records())
 
     def python(self, entities: str, *, imports: str = "", **arguments: str) -> list[dict[str, Any]]:
-        """Return what a file in Python with these entities starts."""
+        """Return the plan of a Python file with these entities."""
         text = HEAD + textwrap.dedent(imports) + BODY.format(entities=textwrap.dedent(entities))
         return list(Plan(self.write("a.launch.py", text), arguments).records())
 

@@ -22,7 +22,7 @@ nav:
 
 
 def rewritten(files: Files, arguments: str) -> Any:
-    """Return what the copy says that RewrittenYaml makes of a file."""
+    """Return the content of the copy that RewrittenYaml creates of a file."""
     source = files.write("source.yaml", SOURCE)
     (record,) = files.python(
         f"SetLaunchConfiguration('x', '3.5'), LogInfo(msg=RewrittenYaml('{source}', {arguments}))",
@@ -95,7 +95,7 @@ BOMB = "a0: &a0 [x, x]\n" + "".join(
 
 @pytest.mark.parametrize(("content", "says"), [("a: [", "parsing"), (BOMB, "more than 80000")])
 def test_a_parameter_file_that_is_no_yaml_is_named(files: Files, content: str, says: str) -> None:
-    """With what is wrong in it, also if a few lines stand for billions of values."""
+    """With the mistake, even if a few lines expand to billions of values."""
     source = files.write("source.yaml", content)
 
     with pytest.raises(LaunchFileError, match=rf"source.yaml: cannot be read as YAML: .*{says}"):
@@ -108,7 +108,7 @@ def test_a_parameter_file_that_is_no_yaml_is_named(files: Files, content: str, s
 def test_parameters_are_built_from_the_files_of_a_package(
     files: Files, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With what xacro makes of a description."""
+    """With xacro's output for a description."""
     document = SimpleNamespace(toxml=lambda: "<robot/>")
     xacro = SimpleNamespace(process_file=lambda path, mappings: document)
     monkeypatch.setitem(sys.modules, "xacro", xacro)
@@ -137,7 +137,7 @@ def test_parameters_are_built_from_the_files_of_a_package(
 def test_a_package_of_the_workspace_comes_before_that_of_aionode(
     files: Files, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It may be newer, or changed."""
+    """It may be newer, or modified."""
     for name in [name for name in sys.modules if name.partition(".")[0] == "nav2_common"]:
         monkeypatch.delitem(sys.modules, name)
     files.write("src/nav2_common/package.xml", "<package><name>nav2_common</name></package>")
@@ -163,7 +163,7 @@ def test_a_package_of_the_workspace_comes_before_that_of_aionode(
 
 
 def test_an_own_substitution_is_exposed_to_files_in_xml(files: Files) -> None:
-    """A file in Python may define it and include the other."""
+    """A Python file may define it and include the other."""
     files.write("b.launch.xml", '<launch><log message="$(shout hello)"/></launch>')
     (record,) = files.python(
         "IncludeLaunchDescription([ThisLaunchFileDir(), '/b.launch.xml'])",

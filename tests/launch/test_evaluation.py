@@ -1,4 +1,4 @@
-"""What launch files in Python start."""
+"""What Python launch files start."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_a_group_keeps_what_it_sets(files: Files) -> None:
 
 
 def test_only_the_process_gets_a_variable(files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A launch file changes what it starts, and not the process that reads it."""
+    """A launch file changes the processes that it starts, and not the process that reads it."""
     monkeypatch.setenv("PATHS", "a")
     records = files.python(
         """
@@ -112,7 +112,7 @@ def test_only_the_process_gets_a_variable(files: Files, monkeypatch: pytest.Monk
 def test_a_substitution_becomes_a_text(
     files: Files, substitution: str, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each kind, as ROS's launch evaluates it."""
+    """Each kind, as evaluated by ROS's launch."""
     monkeypatch.setenv("ROS_LOG_DIR", "/logs")
     monkeypatch.setenv("HOME_OF_LOGS", "/logs")
     monkeypatch.setattr("shutil.which", lambda name, path: f"/bin/{name}")
@@ -125,7 +125,7 @@ def test_a_substitution_becomes_a_text(
 
 
 def test_a_condition_leaves_an_action_out(files: Files) -> None:
-    """Of all kinds of conditions."""
+    """For all kinds of conditions."""
     records = files.python(
         """
         DeclareLaunchArgument('sim', default_value='true'),
@@ -140,7 +140,7 @@ def test_a_condition_leaves_an_action_out(files: Files) -> None:
 
 
 def test_an_included_file_gets_its_arguments_and_knows_its_place(files: Files) -> None:
-    """Also a file in another language; the including file knows its own place again."""
+    """Also a file in another language; the including file then has its own folder again."""
     files.write(
         "sub/inner.launch.xml",
         """
@@ -163,7 +163,7 @@ def test_an_included_file_gets_its_arguments_and_knows_its_place(files: Files) -
 
 
 def test_timers_and_event_handlers_are_part_of_the_plan(files: Files) -> None:
-    """Each says when it does what it does, also one inside another."""
+    """Each says when it does what, even nested ones."""
     records = files.python(
         """
         first := Node(executable='talker', name='talker'),
@@ -195,7 +195,7 @@ def test_what_belongs_to_an_event_is_named_before_it_happens(files: Files) -> No
 
 
 def test_an_opaque_function_sees_the_context_and_returns_actions(files: Files) -> None:
-    """It is called as the file is evaluated, with what was set before it."""
+    """It is called while the file is evaluated, with everything set before it."""
     records = files.python(
         "SetLaunchConfiguration('x', '5'), OpaqueFunction(function=more, args=['word']),",
         imports="""
@@ -238,7 +238,7 @@ def test_a_class_is_in_a_module_of_its_own_as_well(files: Files) -> None:
 
 
 def test_a_parameter_has_the_type_that_yaml_gives_its_text(files: Files) -> None:
-    """Unless `ParameterValue` says which one it has."""
+    """Unless `ParameterValue` specifies one."""
     records = files.python(
         """
         SetLaunchConfiguration('x', '5'),
@@ -272,7 +272,7 @@ def test_an_executable_is_found_in_its_package(files: Files, package: Path) -> N
 
 
 def test_an_executable_of_a_workspace_is_found_without_a_build(files: Files) -> None:
-    """Also as the first word of a command; it is called by its name in any case."""
+    """Also as the first word of a command; its name stays the same in any case."""
     files.write("src/robot/package.xml", "<package><name>robot</name></package>")
     files.write("src/robot/robot/__init__.py", "")
     files.write(
@@ -299,7 +299,7 @@ def test_an_executable_of_a_workspace_is_found_without_a_build(files: Files) -> 
 def test_parameter_files_are_handed_over_or_read_for_a_component(
     files: Files, package: Path
 ) -> None:
-    """A node reads its files itself; a container is told what they have for its node."""
+    """A node reads its files itself; a container gets the values for its node."""
     files.write(
         "a.yaml",
         """
@@ -362,7 +362,7 @@ def test_components_of_a_container_have_their_parameters(files: Files, package: 
 
 
 def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
-    """Those of groups and of included files, too."""
+    """Including those of groups and of included files."""
     inner = files.write("inner.launch.yaml", "launch:\n- arg: {name: speed, default: '1.0'}\n")
     plan = Plan(
         files.write(
@@ -449,7 +449,7 @@ def test_a_bad_entity_is_one_error_with_its_line(files: Files, entity: str) -> N
 
 
 def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files) -> None:
-    """A function is called, and a command run, when its time has come; names keep their numbers."""
+    """Functions and commands run when their time has come; names keep their numbers."""
     plan = Plan(
         files.write(
             "a.launch.py",
@@ -480,7 +480,7 @@ def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files
 def test_a_command_in_python_finds_the_packages_of_the_workspace(
     command: str, files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The xacro of PyPI asks ament's index where a package is, also off the PATH."""
+    """PyPI's xacro asks ament's index for packages, even if it is not on the PATH."""
     scripts = tmp_path / "bin"
     scripts.mkdir()
     python = scripts / "python"
@@ -511,7 +511,7 @@ def test_a_command_in_python_finds_the_packages_of_the_workspace(
 def test_a_missing_xacro_has_its_remedy(
     action: str, files: Files, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Most descriptions of robots need it, and it is one extra away."""
+    """Most robot descriptions need it, and it is one extra away."""
     monkeypatch.setattr("shutil.which", lambda name, path: None)
 
     with pytest.raises(
@@ -523,7 +523,7 @@ def test_a_missing_xacro_has_its_remedy(
 def test_a_xacro_of_another_python_has_its_remedy(
     files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """That Python has no packages of ROS, and xacro's error does not say whose it is."""
+    """That Python has no ROS packages, and xacro's error does not say which Python it is."""
     xacro = tmp_path / "xacro"
     xacro.write_text("#!/bin/sh\necho \"No module named 'ament_index_python'\" >&2; exit 2\n")
     xacro.chmod(0o755)
@@ -595,7 +595,7 @@ def test_a_command_that_writes_without_end_is_an_error(files: Files, stream: str
 
 
 def test_substitutions_are_nested_to_a_limit(files: Files) -> None:
-    """Python's own limit would be met deep in the reader."""
+    """Python's own limit would be hit deep in the reader."""
     text = "$(env " * 500 + "A" + ")" * 500
     with pytest.raises(LaunchFileError, match="nested deeper than 100"):
         files.plan("a.launch.xml", f'<launch><arg name="x" default="{text}"/></launch>')
@@ -629,7 +629,7 @@ from launch.utilities.typing_file_path import FilePath
 
 
 def test_launch_files_find_the_names_of_released_launch(files: Files) -> None:
-    """In the modules in which ROS has them; an import of one that is missing ends the file."""
+    """In the modules in which ROS has them; a missing import ends the file."""
     imports = f"import logging\n{NAMES}"
     (record,) = files.python(
         "LogInfo(msg=str((SameEntity is Entity, SameParser is Parser, launch_config.level)))",
@@ -666,7 +666,7 @@ def test_a_launch_file_reads_another_one_by_itself(
 
 
 def test_a_parser_reads_a_text(files: Files) -> None:
-    """As tests of launch files in XML do."""
+    """As in tests of XML launch files."""
     (record,) = files.python(
         "*(lambda root, parser: parser.parse_description(root).entities)("
         "*Parser.load(io.StringIO('<launch><log message=\"hi\"/></launch>')))",
@@ -686,7 +686,7 @@ def test_a_parser_reads_a_text(files: Files) -> None:
 def test_a_file_that_is_no_launch_file_has_launchs_error(
     files: Files, function: str, error: str
 ) -> None:
-    """Which programs catch."""
+    """Programs catch it."""
     path = files.write("b.launch.txt", "nothing")
     body = f"get_launch_description_from_{function}_launch_file({path!r})"
     with pytest.raises(LaunchFileError, match=error):
@@ -694,7 +694,7 @@ def test_a_file_that_is_no_launch_file_has_launchs_error(
 
 
 def test_an_introspector_shows_a_description_as_a_tree(files: Files) -> None:
-    """Launch files of the first years print it."""
+    """The earliest launch files print it."""
     (record,) = files.python(
         "LogInfo(msg=LaunchIntrospector().format_launch_description(LaunchDescription(["
         "LogInfo(msg='hi'), RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg='end')]))])))",
@@ -716,7 +716,7 @@ def test_reading_a_launch_file_leaves_no_file_beside_it(files: Files) -> None:
 
 
 def test_names_of_launch_are_found_by_programs(tmp_path: Path) -> None:
-    """A program of rclpy, such as a helper of launch files, may import them as well."""
+    """An rclpy program, such as a helper of launch files, may import them as well."""
     program = tmp_path / "program.py"
     program.write_text("import rclpy, launch, launch_ros.actions\nprint(launch.__name__)\n")
     done = subprocess.run(
@@ -758,7 +758,7 @@ def test_what_is_done_later_sees_arguments_that_are_declared_after_it(
 
 
 def test_what_a_group_does_later_keeps_what_the_group_has_set(files: Files) -> None:
-    """What the file sets afterwards is outside of its scope."""
+    """Anything that the file sets afterwards is outside its scope."""
     plan = files.python(
         """
         GroupAction([SetLaunchConfiguration('side', 'left'), TimerAction(period=1.0, actions=[
@@ -771,7 +771,7 @@ def test_what_a_group_does_later_keeps_what_the_group_has_set(files: Files) -> N
 
 
 def test_a_launch_file_uses_functions_of_another_file(files: Files) -> None:
-    """As those of many robots do; what fails in it is said with its place."""
+    """As in many robots; a failure in it is reported with its place."""
     lib = files.write("lib.py", "def text():\n    return 'from lib'\n")
     broken = files.write("broken.py", "\n1 / 0\n")
 

@@ -1,4 +1,4 @@
-"""Launch files that name packages which are not there."""
+"""Launch files that name missing packages."""
 
 from __future__ import annotations
 
@@ -44,26 +44,26 @@ def generate_launch_description():
 
 @pytest.fixture(autouse=True)
 def without_stand_ins(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Nothing of a ROS 2 that is sourced, and no stand-ins afterwards."""
+    """Without a sourced ROS 2, and without stand-ins afterwards."""
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     yield
     use_stand_ins(wanted=False)
 
 
 def records(files: Files, text: str = FILE) -> list[dict[str, Any]]:
-    """Return what a file starts without what is missing."""
+    """Return what a file starts without its missing parts."""
     return list(Plan(files.write("a.launch.py", text), skip_missing=True).records())
 
 
 def test_what_needs_a_missing_package_is_left_out_and_the_rest_is_started(files: Files) -> None:
-    """A robot drives also where nobody watches it in RViz."""
+    """A robot drives even if nobody watches it in RViz."""
     found = records(files)
 
     assert [each["argv"] for each in found if "argv" in each] == [["echo", "started"]]
 
 
 def test_each_missing_package_is_one_warning_with_what_was_left_out(files: Files) -> None:
-    """And with what it is, if aionode knows that."""
+    """With its description, if aionode knows one."""
     logs = [each["log"] for each in records(files) if "log" in each and not each["when"]]
 
     assert len([text for text in logs if "'rviz2'" in text]) == 1
@@ -80,7 +80,7 @@ def test_each_missing_package_is_one_warning_with_what_was_left_out(files: Files
 def test_without_the_option_the_first_of_them_is_an_error_that_says_what_it_is(
     files: Files,
 ) -> None:
-    """Nothing starts then, as for all that is wrong with a file."""
+    """Nothing is started then, as for any mistake in a file."""
     text = FILE.replace('get_package_share_directory("tb3_sim")', '"/share"')
 
     with pytest.raises(LaunchFileError, match=r"'rviz2': not found in .* it is a window of ROS's"):
@@ -88,7 +88,7 @@ def test_without_the_option_the_first_of_them_is_an_error_that_says_what_it_is(
 
 
 def test_what_is_wrong_otherwise_stays_an_error(files: Files) -> None:
-    """A misspelt option is no missing package."""
+    """A misspelt option is not a missing package."""
     text = FILE.replace('"echo", "started"', '"echo"], shel=["x"')
 
     with pytest.raises(LaunchFileError, match="has no 'shel'"):
@@ -116,7 +116,7 @@ def generate_launch_description():
 
 
 def test_of_a_container_the_nodes_stay_that_aionode_has(files: Files) -> None:
-    """The others are named, with what they are."""
+    """The others are named, with their descriptions."""
     found = records(files, CONTAINER)
 
     plugins = [each["plugin"] for each in found if "plugin" in each]
@@ -132,13 +132,13 @@ def test_of_a_container_the_nodes_stay_that_aionode_has(files: Files) -> None:
 def test_without_the_option_a_plugin_that_is_missing_is_an_error_that_says_what_it_is(
     files: Files,
 ) -> None:
-    """Not that there is no container, which it would not help to have."""
+    """Rather than that the container is missing, since having it would not help."""
     with pytest.raises(LaunchFileError, match=r"'image_proc': not found in .* it is a set of plug"):
         _ = Plan(files.write("a.launch.py", CONTAINER)).steps
 
 
 def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) -> None:
-    """As one of classes of Python."""
+    """Like a container of Python classes."""
     text = CONTAINER.replace(
         'ComposableNode(package="image_proc", plugin="image_proc::RectifyNode", name="eye"),', ""
     )
@@ -190,7 +190,7 @@ def generate_launch_description():
 
 
 def test_what_is_made_by_a_module_that_is_not_there_is_left_out(files: Files) -> None:
-    """Many launch files begin by importing helpers of a package, for some of their nodes."""
+    """Many launch files begin with imports of a package's helpers, for some of their nodes."""
     found = records(files, MODULES)
 
     started = [each["argv"] for each in found if "argv" in each]
@@ -208,7 +208,7 @@ def test_what_is_made_by_a_module_that_is_not_there_is_left_out(files: Files) ->
 def test_a_file_whose_description_comes_from_a_module_that_is_not_there_starts_nothing(
     files: Files,
 ) -> None:
-    """As those that MoveIt's assistant writes."""
+    """Such as those written by MoveIt's assistant."""
     text = """
 def generate_launch_description():
     from moveit_configs_elsewhere.launches import generate_rsp_launch
@@ -222,7 +222,7 @@ def generate_launch_description():
 
 
 def test_a_name_that_aionode_does_not_have_stays_an_error(files: Files) -> None:
-    """The package is there; leaving things out would hide a mistake."""
+    """The package exists; leaving things out would hide a mistake."""
     text = "from launch.acions import Node\n"
 
     with pytest.raises(LaunchFileError, match="launch"):
@@ -230,7 +230,7 @@ def test_a_name_that_aionode_does_not_have_stays_an_error(files: Files) -> None:
 
 
 def test_a_command_that_looks_for_a_package_that_is_not_there_is_left_out(files: Files) -> None:
-    """Such as xacro, of a description that includes another one's."""
+    """Such as xacro, for a description that includes another package's."""
     pytest.importorskip("xacro")
     files.write(
         "robot.urdf.xacro",
@@ -256,7 +256,7 @@ def generate_launch_description():
 def test_a_node_is_left_out_whose_parameters_are_in_a_package_that_is_not_there(
     files: Files,
 ) -> None:
-    """Without them it would be another node than the one that is meant."""
+    """Without them it would be a different node from the intended one."""
     text = """
 import os
 from ament_index_python.packages import get_package_share_directory

@@ -93,7 +93,7 @@ def test_the_same_file_in_xml_and_yaml_starts_the_same(files: Files) -> None:
 
 
 def test_loops_have_their_values_in_substitutions(files: Files) -> None:
-    """Those of an outer loop are there in an inner one, and no others after it."""
+    """Those of an outer loop exist in an inner one, and none do after it."""
     records = files.plan(
         "a.launch.xml",
         """<launch>
@@ -128,7 +128,7 @@ BAD_XML = {
 
 @pytest.mark.parametrize("text", BAD_XML)
 def test_a_bad_file_in_xml_is_one_error_with_its_line(files: Files, text: str) -> None:
-    """Also what could be read otherwise: a misspelt attribute is no default."""
+    """Even a mistake that could be ignored: a misspelt attribute is no default."""
     line, problem = BAD_XML[text]
     with pytest.raises(LaunchFileError) as caught:
         files.plan("a.launch.xml", text)
@@ -194,7 +194,7 @@ BOMB = "a0: &a0 [x, x]\n" + "".join(
 
 
 def test_aliases_of_aliases_are_refused(files: Files) -> None:
-    """A few lines stand for billions of values."""
+    """A few lines expand to billions of values."""
     path = files.write("a.launch.yaml", f"launch:\n- arg: {{name: a}}\n{BOMB}")
 
     with pytest.raises(LaunchFileError, match="more than 80000 values") as caught:

@@ -1,6 +1,6 @@
-"""Launch files of robots with MoveIt, with the parameters of the package of such a robot.
+"""Launch files of robots with MoveIt, with the parameters of such a robot's package.
 
-That of moveit2 8fcb5d2 makes the same of the packages of moveit_resources (compared by hand).
+moveit2 8fcb5d2 gives the same for the packages of moveit_resources (compared manually).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def planned(files: Files, description: str, **arguments: str) -> list[dict[str, 
 
 
 def parameters(files: Files, builder: str) -> dict[str, Any]:
-    """Return what a builder collects."""
+    """Return the parameters collected by a builder."""
     shown = f"LaunchDescription([LogInfo(msg=json.dumps({builder}.to_dict()))])"
     (record,) = planned(files, shown)
     found: dict[str, Any] = json.loads(record["log"])
@@ -85,7 +85,7 @@ def parameters(files: Files, builder: str) -> dict[str, Any]:
 
 
 def test_the_package_of_a_robot_gives_moveits_parameters(arm: Files) -> None:
-    """From the files that the Setup Assistant writes, and with its arguments of xacro."""
+    """From the files written by the Setup Assistant, with its xacro arguments."""
     found = parameters(arm, "MoveItConfigsBuilder('arm')")
 
     assert 'link name="hand"' in found["robot_description"]
@@ -101,7 +101,7 @@ def test_the_package_of_a_robot_gives_moveits_parameters(arm: Files) -> None:
 
 
 def test_planners_are_those_of_the_package_before_those_of_moveit(arm: Files) -> None:
-    """A robot replaces the parameters of one planner, and has the others as they are."""
+    """A robot replaces the parameters of one planner, and keeps the others."""
     found = parameters(arm, "MoveItConfigsBuilder('arm')")
 
     assert sorted(found["planning_pipelines"]) == [
@@ -141,7 +141,7 @@ def test_planners_are_set_up_for_the_distribution(
     ],
 )
 def test_planners_can_be_chosen(arm: Files, call: str, names: list[str], default: str) -> None:
-    """By name, or those that the package has a file for."""
+    """By name, or those for which the package has a file."""
     found = parameters(arm, f"MoveItConfigsBuilder('arm').{call}")
 
     assert found["planning_pipelines"] == names
@@ -159,7 +159,7 @@ def test_planners_can_be_chosen(arm: Files, call: str, names: list[str], default
 def test_what_is_not_there_or_not_clear_is_an_error_of_the_launch_file(
     arm: Files, call: str, part: str
 ) -> None:
-    """With what is there."""
+    """With what exists."""
     folder = arm.folder / "src/arm_moveit_config/config"
     (folder / "moveit_controllers.yaml").rename(folder / "a_controllers.yaml")
     (folder / "b_controllers.yaml").write_text("{}")
@@ -169,7 +169,7 @@ def test_what_is_not_there_or_not_clear_is_an_error_of_the_launch_file(
 
 
 def test_arguments_of_xacro_may_be_known_at_launch_only(arm: Files) -> None:
-    """As an argument of the launch file, which says whether there is a hand."""
+    """Such as a launch argument that says whether there is a hand."""
     builder = (
         "MoveItConfigsBuilder('arm')"
         ".robot_description(mappings={'hand': LaunchConfiguration('hand')})"
@@ -209,7 +209,7 @@ def test_the_launch_files_of_the_setup_assistant_start_what_aionode_has(arm: Fil
     ],
 )
 def test_the_other_launch_files_name_what_they_need(arm: Files, launch: str, package: str) -> None:
-    """They come as far as the program in C++, which aionode does not have."""
+    """They get as far as the C++ program, which aionode does not have."""
     with pytest.raises(LaunchFileError, match=f"'{package}': not found"):
         planned(arm, f"{launch}(MoveItConfigsBuilder('arm').to_moveit_configs())")
 

@@ -1,4 +1,4 @@
-"""Launch files that run: what is started when, and what is left."""
+"""Running launch files: what is started when, and what remains."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ROOT = Path(__file__).parents[2]
 
 
 class Robot:
-    """A system that runs a launch file, and what it printed."""
+    """A system that runs a launch file, and its output."""
 
     def __init__(self, files: Files) -> None:
         self.files = files
@@ -41,7 +41,7 @@ class Robot:
         self.system = System("tested", context=context, log=SystemLog(self.output))
 
     def plan(self, entities: str, imports: str = "") -> Plan:
-        """Return the plan of a file in Python with these entities."""
+        """Return the plan of a Python file with these entities."""
         text = HEAD + textwrap.dedent(imports) + BODY.format(entities=textwrap.dedent(entities))
         return Plan(self.files.write("a.launch.py", text))
 
@@ -63,7 +63,7 @@ def robot(files: Files) -> Robot:
 
 
 async def test_the_end_of_a_process_starts_the_next_one(robot: Robot) -> None:
-    """An event handler, which may also be a function that gets the exit status."""
+    """An event handler, which may be a function that gets the exit status."""
     lines = await robot.run(
         """
         first := ExecuteProcess(cmd=['sh', '-c', 'exit 3'], name='first'),
@@ -84,7 +84,7 @@ async def test_the_end_of_a_process_starts_the_next_one(robot: Robot) -> None:
 
 
 async def test_a_launch_is_over_when_nothing_can_start_any_more(robot: Robot) -> None:
-    """A timer that waits may start something, a process that has ended not."""
+    """A waiting timer may start something, an ended process may not."""
     lines = await robot.run(
         """
         ExecuteProcess(cmd=['true'], name='short'),
@@ -99,7 +99,7 @@ SLEEPER = "ExecuteProcess(cmd=['sleep', '1000'], name='sleeper'),"
 
 
 async def test_a_launch_ends_when_its_guardian_is_killed(robot: Robot) -> None:
-    """Nobody would stop its processes any more if it were killed itself."""
+    """Nobody would be left to stop its processes if it were killed itself."""
     async with robot.system, asyncio.TaskGroup() as tasks:
         running = tasks.create_task(run_plan(robot.plan(SLEEPER), robot.system))
         await until(lambda: bool(robot.system.status()))
@@ -124,7 +124,7 @@ async def test_a_launch_ends_when_its_system_is_asked_to(robot: Robot) -> None:
 
 
 async def test_a_main_function_of_a_system_ends_with_it() -> None:
-    """It may wait for something that will not come any more."""
+    """It may wait for something that will never happen."""
     async with System("tested", context=Context(transport="local")) as system:
 
         async def main(system: System) -> None:
@@ -135,7 +135,7 @@ async def test_a_main_function_of_a_system_ends_with_it() -> None:
 
 
 async def test_a_start_is_an_event(robot: Robot) -> None:
-    """Also of a process that ends at once."""
+    """Even of a process that ends at once."""
     lines = await robot.run(
         """
         first := ExecuteProcess(cmd=['true'], name='first'),
@@ -147,7 +147,7 @@ async def test_a_start_is_an_event(robot: Robot) -> None:
 
 
 async def test_a_process_reads_its_parameters_from_a_file(robot: Robot) -> None:
-    """The file is gone when the launch is over."""
+    """The file is removed when the launch is over."""
     script = robot.files.write(
         "node.sh", '#!/bin/sh\nfor last; do :; done\ncat "$last"; echo $last'
     )
@@ -161,7 +161,7 @@ async def test_a_process_reads_its_parameters_from_a_file(robot: Robot) -> None:
 
 
 async def test_a_process_is_signalled_and_stopped_by_events(robot: Robot) -> None:
-    """`SignalProcess` and `ShutdownProcess`, at the processes that a function names."""
+    """`SignalProcess` and `ShutdownProcess`, for the processes that a function selects."""
     lines = await robot.run(
         """
         first := ExecuteProcess(cmd=['sh', '-c',
@@ -196,7 +196,7 @@ async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) ->
 
 
 async def test_plugins_that_aionode_has_run_as_tasks(robot: Robot) -> None:
-    """Those of ROS's packages that launch files load into a container, with their parameters."""
+    """Components of ROS's packages that launch files load into containers, with parameters."""
     plan = robot.plan(
         """
         ComposableNodeContainer(name='c', namespace='', composable_node_descriptions=[
@@ -228,7 +228,7 @@ async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> Non
     )
     async with robot.system as system, asyncio.TaskGroup() as tasks:
         running = tasks.create_task(run_plan(plan, system))
-        async with LifecycleNode("arm", context=system.context) as arm:  # in the program's place
+        async with LifecycleNode("arm", context=system.context) as arm:  # in place of the program
             await until(lambda: arm.lifecycle_state.label == "active")
         running.cancel()
 
@@ -262,7 +262,7 @@ async def test_the_states_of_a_managed_node_are_events(robot: Robot) -> None:
 
 
 async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: Robot) -> None:
-    """By the service of ROS's containers, one after the other; the log has what it answers."""
+    """By the service of ROS's containers, one after another; the log contains the answers."""
     plan = robot.plan(
         """
         LoadComposableNodes(target_container='/c', composable_node_descriptions=[
@@ -296,7 +296,7 @@ async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: 
 
 
 async def test_a_launch_goes_on_while_its_only_process_is_restarted(robot: Robot) -> None:
-    """On request; the event handlers hear of both runs."""
+    """On request; the event handlers are called for both runs."""
     plan = robot.plan(
         """
         only := ExecuteProcess(cmd=['sleep', '1000'], name='only'),
@@ -313,7 +313,7 @@ async def test_a_launch_goes_on_while_its_only_process_is_restarted(robot: Robot
 
 
 async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
-    """With `watch`; also one that has ended, such as one that was saved half written."""
+    """With `watch`; even one that has ended, such as a program that was saved half written."""
     programs = [Path(robot.files.write(name, "exit 3")) for name in ("ends.sh", "stays.sh")]
     plan = robot.plan(
         f"""
@@ -355,7 +355,7 @@ async def test_the_command_ends_with_the_launch(robot: Robot) -> None:
 
 
 async def test_what_a_process_writes_is_an_event(robot: Robot) -> None:
-    """The two streams are known apart, all of it comes before the exit, and the log has it."""
+    """The two streams are distinguished, everything arrives before the exit, and it is logged."""
     lines = await robot.run(
         """
         first := ExecuteProcess(cmd=['sh', '-c', 'echo out; echo err >&2; printf rest']),
@@ -375,7 +375,7 @@ async def test_what_a_process_writes_is_an_event(robot: Robot) -> None:
 
 
 async def test_the_output_of_a_process_can_be_kept(robot: Robot) -> None:
-    """Functions of the file ask the action for it."""
+    """Functions in the file get it from the action."""
     lines = await robot.run(
         """
         first := ExecuteProcess(cmd=['echo', 'hello'], cached_output=True, log_cmd=True),
@@ -389,7 +389,7 @@ async def test_the_output_of_a_process_can_be_kept(robot: Robot) -> None:
 
 
 async def test_the_completion_of_an_action_is_an_event(robot: Robot) -> None:
-    """That of a process is its end, that of a timer when it has fired; others complete at once."""
+    """A process completes when it ends, a timer when it has fired; others complete at once."""
     lines = await robot.run(
         """
         *[RegisterEventHandler(OnExecutionComplete(
@@ -414,7 +414,7 @@ async def test_the_completion_of_an_action_is_an_event(robot: Robot) -> None:
 
 
 async def test_a_coroutine_runs_beside_the_processes(robot: Robot) -> None:
-    """What it adds to its context is done at once, and the launch waits for its end."""
+    """Whatever it adds to its context is executed at once, and the launch waits for its end."""
     lines = await robot.run(
         "OpaqueCoroutine(coroutine=work, args=['word']),",
         imports="""
@@ -431,7 +431,7 @@ async def test_a_coroutine_runs_beside_the_processes(robot: Robot) -> None:
 
 
 async def test_a_coroutine_that_fails_is_one_error_with_its_line(robot: Robot) -> None:
-    """As that of a function."""
+    """Like that of a function."""
     with pytest.raises(LaunchFileError, match=r"a\.launch\.py:\d+: OpaqueCoroutine: broken"):
         await robot.run(
             "OpaqueCoroutine(coroutine=work, ignore_context=True),",
@@ -443,7 +443,7 @@ async def test_a_coroutine_that_fails_is_one_error_with_its_line(robot: Robot) -
 
 
 async def test_a_process_is_ended_as_its_time_limits_say(robot: Robot) -> None:
-    """A launch configuration serves all processes; the exit code is that of Python's library."""
+    """A launch configuration applies to all; the exit code is that of Python's library."""
     await robot.run(
         """
         SetLaunchConfiguration('sigkill_timeout', '0.1'),
@@ -463,7 +463,7 @@ async def test_a_process_is_ended_as_its_time_limits_say(robot: Robot) -> None:
 async def test_a_process_has_the_environment_that_the_file_gives_it(
     robot: Robot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A variable that is unset is not there; and all are in the domain of the system."""
+    """An unset variable is missing; and all processes are in the domain of the system."""
     monkeypatch.setenv("GONE", "1")
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     lines = await robot.run(
@@ -477,7 +477,7 @@ async def test_a_process_has_the_environment_that_the_file_gives_it(
 
 
 async def test_a_process_may_print_to_a_terminal(robot: Robot) -> None:
-    """With `emulate_tty`; its lines end as others do."""
+    """With `emulate_tty`; its lines end like others."""
     lines = await robot.run(
         """
         ExecuteProcess(cmd=['sh', '-c', 'test -t 1 && echo yes'], emulate_tty=True),
@@ -489,7 +489,7 @@ async def test_a_process_may_print_to_a_terminal(robot: Robot) -> None:
 
 
 async def test_nothing_begins_at_a_shutdown(robot: Robot) -> None:
-    """Neither a timer nor a coroutine: everything ends, so they would never be done."""
+    """Neither a timer nor a coroutine: everything is ending, so they would never be done."""
     lines = await robot.run(
         """
         RegisterEventHandler(OnShutdown(on_shutdown=[
@@ -506,7 +506,7 @@ async def test_nothing_begins_at_a_shutdown(robot: Robot) -> None:
 
 
 async def test_an_error_in_an_event_handler_ends_the_launch(robot: Robot) -> None:
-    """It is the error of the launch file, with its line."""
+    """It is an error of the launch file, with its line."""
     with pytest.raises(LaunchFileError, match="'nope' does not exist"):
         await robot.run(
             """
@@ -567,7 +567,7 @@ print('status', status, service.run())
 
 
 def test_the_command_starts_nothing_of_a_bad_file(files: Files) -> None:
-    """The error is one line, and the mark of the first process is not there."""
+    """The error is one line, and the first process has left no mark."""
     mark = files.folder / "started"
     path = files.write(
         "bad.launch.xml",
@@ -607,7 +607,7 @@ def test_the_robot_of_the_examples_starts_and_leaves_nothing() -> None:
 
 @pytest.mark.parametrize("watch", [False, True])
 async def test_nothing_holds_a_launch_whose_guardian_is_killed(robot: Robot, watch: bool) -> None:
-    """Neither a timer that is due in an hour nor a process that starts again.
+    """Neither a timer that is due in an hour nor a process that is to be restarted.
 
     Processes end by the usual signals, and event handlers see the shutdown.
     """

@@ -1,4 +1,4 @@
-"""Actions in the differential tests: ``action_scenarios.py [name …]``, as `scenarios.py`."""
+"""Actions in the differential tests: ``action_scenarios.py [name …]``, like `scenarios.py`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Counting:
         until(condition, lambda: self.executor.spin_once(timeout_sec=0.05))
 
     def send(self, order: int, **options: Any) -> Any:
-        """Send a goal, and return what the server says of it."""
+        """Send a goal, and return the server's answer."""
         return self.result_of(self.client.send_goal_async(Fibonacci.Goal(order=order), **options))
 
     def end(self, goal: Any) -> None:
@@ -69,7 +69,7 @@ def a01_a_goal_from_its_request_to_its_result(trace: Trace) -> None:
     counting.until(lambda: heard)
     counting.end(goal)
     trace("feedback", list(heard[0].feedback.sequence), heard[0].goal_id == goal.goal_id)
-    counting.end(goal)  # as often as it is asked for
+    counting.end(goal)  # as often as requested
     trace("repr", repr(goal).partition(" ")[0], repr(goal).rpartition(", ")[2])
     answer = counting.result_of(goal.cancel_goal_async())
     trace("cancelled too late", answer.return_code, len(answer.goals_canceling))

@@ -1,4 +1,4 @@
-"""Ends and faults of a program of rclpy, each between looks at what else the process has.
+"""Ends and faults of an rclpy program, each between checks of what else the process has.
 
 ``belongings.py`` prints, by the name of each, what was not as before.
 """
@@ -45,13 +45,13 @@ class Failure(Exception):  # noqa: N818  # raised on purpose
 
 
 def end(work: Callable[[], object]) -> Callable[[], object]:
-    """Note one end."""
+    """Record one end."""
     ENDS[work.__name__] = work
     return work
 
 
 def communicate() -> Any:
-    """Publish and ask in a new context, and hear both; return the node."""
+    """Publish and call in a new context, and receive both; return the node."""
     rclpy.init()
     node = rclpy.create_node("guest")
     heard: list[int] = []
@@ -199,7 +199,7 @@ def a_peer_that_is_frozen() -> None:
 
 
 def descriptors() -> dict[int, str]:
-    """Return the open descriptors, and of what they are."""
+    """Return the open descriptors, and their targets."""
     found = {}
     for entry in Path("/proc/self/fd").iterdir():
         with suppress(FileNotFoundError):  # that of the listing itself
@@ -208,12 +208,12 @@ def descriptors() -> dict[int, str]:
 
 
 def main() -> None:
-    # What is made once and stays is made here: the threads of Zenoh, and what they wait with.
+    # One-time objects that stay are created here: the threads of Zenoh, and what they wait with.
     with_a_peer(subprocess.Popen.kill)
     found = {}
     for name, work in ENDS.items():
         try:
-            # With handlers of its own, the main thread leaves sending and reading to the context's
+            # With its own handlers, the main thread leaves sending and reading to the context's
             # thread; without, it does both itself.
             for hold in (guest, locks):
                 with tempfile.TemporaryDirectory() as folder, hold(Path(folder)):

@@ -1,7 +1,7 @@
-"""Programs of rclpy that signals and finalizers interrupt: ``interruptions.py name``.
+"""rclpy programs that signals and finalizers interrupt: ``interruptions.py name``.
 
-Each prints a line of JSON, which `test_interruptions.py` checks. They run in processes of their
-own, as handlers of signals belong to the main thread, and a hang is to end nothing else.
+Each prints a line of JSON, which `test_interruptions.py` checks. They run in separate processes,
+because signal handlers belong to the main thread, and a hang must not affect anything else.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ OWN_CODE = ("aionode/ros_packages", "aionode/_process/lendable_loop", "aionode/e
 
 
 class Interrupted(Exception):  # noqa: N818  # no error of the program
-    """What a handler raises."""
+    """Raised by a handler."""
 
 
 @contextmanager
 def alarms(interval_s: float, handler: Callable[[int, Any], object]) -> Iterator[None]:
-    """Have a handler called again and again, each time so long after it has returned."""
+    """Call a handler repeatedly, each time some time after it has returned."""
     is_over = False
 
     def call(number: int, frame: FrameType | None) -> None:
@@ -52,7 +52,7 @@ def alarms(interval_s: float, handler: Callable[[int, Any], object]) -> Iterator
     try:
         yield
     finally:
-        is_over = True  # first: a call that is due comes after the next line
+        is_over = True  # first: a call that is due runs after the next line
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
 
@@ -100,7 +100,7 @@ class Robot:
         return self.sent
 
     def is_well(self) -> bool:
-        """Return whether a message and an answer come as if nothing had happened."""
+        """Return whether a message and an answer arrive as if nothing had happened."""
         number = self.publish()
         ends_s = monotonic() + PATIENCE_S
         while number not in self.heard[-1:]:
@@ -140,7 +140,7 @@ def publishes() -> dict[str, Any]:
 
 
 def asks() -> dict[str, Any]:
-    """Ask a server in a handler, while the main thread publishes, and while it spins."""
+    """Call a server in a handler, while the main thread publishes, and while it spins."""
     robot = Robot()
     answers: list[bool] = []
     with server("asked"):
@@ -158,7 +158,7 @@ def asks() -> dict[str, Any]:
 
 
 def makes_entities() -> dict[str, Any]:
-    """Create and destroy entities in a handler, while the main thread does it and publishes."""
+    """Create and destroy entities in a handler, while the main thread does that and publishes."""
     robot = Robot()
     made: list[None] = []
 
@@ -179,13 +179,13 @@ def makes_entities() -> dict[str, Any]:
     return {"left": [len([*robot.node.publishers]), len([*robot.node.subscriptions])]}
 
 
-# Something at each place at which a handler may be called
+# Something at each place where a handler may be called
 
 
 class Interruption:
-    """Does something at one place of the program: at the n-th call, or end of a call of C.
+    """Does something at one place of the program: at the n-th call, or return of a C function.
 
-    Those are the places at which Python calls handlers of signals.
+    Those are the places at which Python calls signal handlers.
     """
 
     def __init__(self, place: int, action: Callable[[], object]) -> None:
@@ -232,18 +232,18 @@ def interrupt_everywhere(
 
 
 def fail(number: int, frame: FrameType | None) -> None:
-    """Raise, as handlers of programs do."""
+    """Raise, like handlers of programs."""
     raise Interrupted
 
 
 def fail_later(number: int, frame: FrameType | None) -> None:
-    """Raise, as rclpy's own handler makes Ctrl-C an exception: not where that does harm."""
+    """Raise like rclpy's handler of Ctrl-C: except where an exception does harm."""
     if not uninterrupted.postpone(partial(fail_later, number, None)):
         raise Interrupted
 
 
 def with_a_raising_handler(handler: Callable[[int, Any], object]) -> dict[str, Any]:
-    """Have a handler raise at each place."""
+    """Let a handler raise at each place."""
     if handler is fail_later:
         uninterrupted.own_handlers.add(handler)
     before = signal.signal(signal.SIGUSR1, handler)
@@ -255,7 +255,7 @@ def with_a_raising_handler(handler: Callable[[int, Any], object]) -> dict[str, A
 
 
 def with_a_finalizer(does: str) -> dict[str, Any]:
-    """Have a finalizer publish, or ask, at each place."""
+    """Let a finalizer publish, or call, at each place."""
     robots: list[Robot] = []
 
     class Dropped:
@@ -282,7 +282,7 @@ def with_a_finalizer(does: str) -> dict[str, Any]:
 def interrupt_everything(
     action: Callable[[], object], robots: list[Robot] | None = None
 ) -> dict[str, Any]:
-    """Interrupt what a program does at each place; return which works went wrong, and where."""
+    """Interrupt a program at each place; return the kinds of work that went wrong, and where."""
     robot = Robot()
     if robots is not None:
         robots.append(robot)

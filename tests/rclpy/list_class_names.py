@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 METHOD_IN_C = re.compile(r'^\s*\{"(\w+)", [^"]', re.MULTILINE)
-"""A line of the table of methods of a type that is written in C."""
+"""A line of the method table of a type written in C."""
 
 
 def names_of(node: ast.ClassDef) -> Iterator[str]:
@@ -38,7 +38,7 @@ def names_of(node: ast.ClassDef) -> Iterator[str]:
 
 
 def base_of(expression: ast.expr) -> str:
-    """Return the name of a base, without its module and its parameters."""
+    """Return the name of a base class, without its module and its parameters."""
     return ast.unparse(expression).partition("[")[0].rpartition(".")[2]
 
 

@@ -1,7 +1,7 @@
-"""Prints the public names of rclpy's modules and classes, as JSON, whichever rclpy there is.
+"""Prints the public names of rclpy's modules and classes, as JSON, for any rclpy.
 
-``names.json`` is what it prints with rclpy 9.1.2. Left out are the names of `typing` and of the
-rest of Python, which say nothing about rclpy, and what a class has from outside of rclpy.
+``names.json`` is its output with rclpy 9.1.2. It omits the names of `typing` and of the rest of
+Python, which say nothing about rclpy, and what classes have from outside rclpy.
 """
 
 from __future__ import annotations

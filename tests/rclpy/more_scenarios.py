@@ -1,4 +1,4 @@
-"""The rest of what the differential tests run: ``more_scenarios.py [name …]``, as `scenarios.py`.
+"""Further scenes of the differential tests: ``more_scenarios.py [name …]``, like `scenarios.py`.
 
 Events of QoS, introspection of services, parameters of other nodes, logs, clocks, rates, futures,
 waitables, and more calls than a server keeps.
@@ -541,7 +541,7 @@ def what_belongs_to_a_node(trace: Trace) -> None:
 @scene
 def questions_about_the_graph_check_names(trace: Trace) -> None:
     class Counting(Node):
-        """Has attributes of its own, as programs have."""
+        """Has its own attributes, like programs do."""
 
         def __init__(self) -> None:
             super().__init__("counting")

@@ -1,8 +1,8 @@
-"""What the differential tests run on rclpy and on aionode: ``scenarios.py [name …]``.
+"""The scenes of the differential tests for rclpy and aionode: ``scenarios.py [name …]``.
 
-Each function plays a scene with rclpy's API and traces what can be seen of it; nothing that depends
-on speed is traced. The traces are printed as JSON, by name. The numbers are those of the rules that
-a compatible API has to keep.
+Each function plays a scene with rclpy's API and traces what can be seen of it, except what depends
+on speed. The traces are printed as JSON, by name. The numbers are those of the rules that a
+compatible API has to keep.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def attempt(trace: Trace, what: str, action: Callable[[], Any]) -> None:
 
 
 def thread_name() -> str:
-    """Return which thread this is."""
+    """Return the name of the current thread."""
     main = threading.current_thread() is threading.main_thread()
     return "main" if main else threading.current_thread().name
 
@@ -157,7 +157,7 @@ def e03_spin_once_calls_one_callback_in_the_order_of_rounds(trace: Trace) -> Non
     guard = node.create_guard_condition(lambda: trace("guard"))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    while True:  # what adding it has woken
+    while True:  # woken by adding it
         before = time.monotonic()
         executor.spin_once(timeout_sec=0.01)
         if time.monotonic() - before > 0.005:
@@ -275,7 +275,7 @@ def e08_a_node_is_in_one_executor(trace: Trace) -> None:
 
 
 class Counting(CallbackGroup):
-    """Traces what an executor asks of it."""
+    """Traces what an executor calls of it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -328,7 +328,7 @@ def e09_callback_groups(trace: Trace) -> None:
 
 
 class OwnExecutor(rclpy.executors.Executor):
-    """Runs each task in a new thread, as the example of a custom executor."""
+    """Runs each task in a new thread, like the example of a custom executor."""
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         try:
@@ -516,7 +516,7 @@ def e16_shutdown_in_another_thread_ends_spin(trace: Trace) -> None:
         rclpy.spin(node)
         trace("returned")
     except ExternalShutdownException:
-        trace("returned")  # rclpy does either, as it happens to wait or not
+        trace("returned")  # rclpy does either, depending on whether it happens to wait
     worker.join()
     trace("ok", rclpy.ok())
 
@@ -532,7 +532,7 @@ def e16_sigterm_ends_spin(trace: Trace) -> None:
 
 
 def signalled(trace: Trace, number: int) -> None:
-    """Trace what a signal does to a program that spins."""
+    """Trace the effect of a signal on a spinning program."""
     node = rclpy.create_node("e16")
     context = rclpy.get_default_context()
     context.on_shutdown(lambda: trace("on_shutdown"))
@@ -1027,7 +1027,7 @@ def callbacks_of_managed_nodes_that_fail(trace: Trace) -> None:
 
 
 def managed_and_manager(note: Callable[[Any], None]) -> tuple[Any, Any, Any]:
-    """Return a managed node, one that takes note of its transitions, and the executor of both."""
+    """Return a managed node, one that records its transitions, and the executor of both."""
     managed = LifecycleNode("managed")
     node = rclpy.create_node("manager")
     executor = SingleThreadedExecutor()

@@ -49,13 +49,13 @@ PATIENCE_S = 20.0
 
 @pytest.fixture
 def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Limit what waits in contexts that are made from now on."""
+    """Limit what waits in contexts created from now on."""
     monkeypatch.setenv("AIONODE_QUEUE_BYTES", "65536")
 
 
 @pytest.fixture
 def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
-    """A context that hears nothing else on the machine."""
+    """A context isolated from everything else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     context = rclpy.Context()
@@ -114,7 +114,7 @@ class Server:
 
 
 def client_of(node: Node, action_type: Any = Fibonacci) -> ActionClient[Any, Any, Any]:
-    """Return a client whose server is there."""
+    """Return a client whose server exists."""
     client: ActionClient[Any, Any, Any] = ActionClient(node, action_type, "fibonacci")
     assert client.wait_for_server(PATIENCE_S)
     return client
@@ -124,7 +124,7 @@ def client_of(node: Node, action_type: Any = Fibonacci) -> ActionClient[Any, Any
 def test_a_goal_of_either_message_family_succeeds(
     node: Node, result_of: Callable[..., Any], action_type: Any
 ) -> None:
-    """A program that is moved to aionode may have both kinds of classes."""
+    """A program that is moved to aionode may use both kinds of classes."""
     server = Server(node, action_type)
     client = client_of(node, action_type)
     handle = result_of(client.send_goal_async(action_type.Goal(order=7)))
@@ -154,7 +154,7 @@ def test_a_goal_of_either_message_family_is_cancelled(
 def test_every_goal_of_a_cancel_request_is_decided_about(
     node: Node, result_of: Callable[..., Any]
 ) -> None:
-    """A request without an id means all goals; refused ones are left out of the answer."""
+    """A request without an id selects all goals; rejected ones are left out of the answer."""
     asked: list[int] = []
 
     def refuse(goal: Goal) -> CancelResponse:
@@ -178,7 +178,7 @@ def test_every_goal_of_a_cancel_request_is_decided_about(
 def test_a_goal_that_has_ended_cannot_be_cancelled(
     node: Node, result_of: Callable[..., Any]
 ) -> None:
-    """The code says so, as rcl_action's does."""
+    """The code says so, as in rcl_action."""
     server = Server(node)
     handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
     server.may_end.set_result(None)
@@ -190,7 +190,7 @@ def test_a_goal_that_has_ended_cannot_be_cancelled(
 
 
 def test_a_goal_cannot_end_twice(node: Node, result_of: Callable[..., Any]) -> None:
-    """A state that cannot follow is an error of the program."""
+    """A state that cannot follow is an error in the program."""
     server = Server(node)
     handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
     server.may_end.set_result(None)
@@ -213,7 +213,7 @@ def test_results_are_forgotten_after_their_time(node: Node, result_of: Callable[
 def test_a_goal_may_end_in_a_thread_while_others_are_forgotten(
     node: Node, result_of: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The goals that have ended are listed and forgotten in one step, for each thread."""
+    """Ended goals are listed and forgotten in one step, for each thread."""
     server = Server(node)
     client = client_of(node)
     result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
@@ -240,7 +240,7 @@ def test_a_goal_may_end_in_a_thread_while_others_are_forgotten(
 def test_a_callback_may_destroy_its_server_while_a_result_is_due(
     node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
 ) -> None:
-    """`spin` goes on: the server's goals are forgotten already."""
+    """`spin` continues: the server's goals are already forgotten."""
 
     def decide(goal: Any) -> GoalResponse:
         if server.begun:
@@ -288,7 +288,7 @@ def test_a_client_that_waits_gets_a_result_that_is_not_kept(
 def test_nothing_is_kept_of_requests_whose_callback_fails(
     node: Node, executor: SingleThreadedExecutor
 ) -> None:
-    """The exception comes out of the spin, as in rclpy, and the server does not grow."""
+    """The exception leaves spin, as in rclpy, and the server does not grow."""
 
     def fail(_: Any) -> GoalResponse:
         raise LookupError("on purpose")
@@ -305,7 +305,7 @@ def test_nothing_is_kept_of_requests_whose_callback_fails(
 def test_the_feedback_callback_of_a_rejected_goal_is_forgotten(
     node: Node, result_of: Callable[..., Any]
 ) -> None:
-    """A client that is refused again and again does not grow."""
+    """A client that is repeatedly rejected does not grow."""
     Server(node, goal_callback=lambda _: GoalResponse.REJECT)
     client = client_of(node)
 
@@ -334,7 +334,7 @@ def test_a_client_knows_the_state_of_its_goals(
 
 
 class States:
-    """Counts the messages with the states of goals, and keeps the last one."""
+    """Counts the status messages of goals, and keeps the last one."""
 
     def __init__(self, node: Node) -> None:
         self.count = 0
@@ -351,7 +351,7 @@ class States:
 def test_goals_beyond_the_limit_are_rejected_before_the_program_is_asked(
     node: Node, result_of: Callable[..., Any], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Clients that send goals which never end take no memory without bound."""
+    """Clients that send goals which never end do not take unlimited memory."""
     asked: list[Any] = []
 
     def decide(goal: Any) -> GoalResponse:
@@ -391,7 +391,7 @@ def test_goals_that_are_too_large_together_are_rejected(
 def test_of_too_many_results_the_oldest_is_forgotten(
     node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
 ) -> None:
-    """Results are not kept without bound, however long their time is."""
+    """The number of results is bounded, however long their timeout is."""
     server = Server(node, max_goals=2, result_timeout=-1)
     server.may_end.set_result(None)
     client = client_of(node)
@@ -413,7 +413,7 @@ def test_the_states_of_many_goals_are_published_less_often_than_they_change(
     result_of: Callable[..., Any],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Each message lists all goals; the last one is sent at the end of the server at the latest."""
+    """Each message lists all goals; the last one is sent at the latest when the server ends."""
     monkeypatch.setattr(_status_pace, "SPACING_S", 1000.0)
     states = States(node)
     server = Server(node)
@@ -437,7 +437,7 @@ def test_the_states_of_many_goals_are_published_less_often_than_they_change(
 def test_the_states_of_many_goals_are_published_after_a_while(
     node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
 ) -> None:
-    """What clients know last is the truth, though not each change was sent."""
+    """The last message that clients get is current, although not every change was sent."""
     states = States(node)
     server = Server(node)
     client = client_of(node)
@@ -451,7 +451,7 @@ def test_the_states_of_many_goals_are_published_after_a_while(
 
 
 def test_the_classes_can_be_given_types() -> None:
-    """Programs annotate their callbacks so; without that a module could not be imported."""
+    """Programs annotate their callbacks this way; otherwise a module could not be imported."""
     for cls in (ServerGoalHandle, ClientGoalHandle, ActionServer, ActionClient):
         assert get_origin(cls[Any, Any, Any]) is cls
 
@@ -478,7 +478,7 @@ def test_the_graph_has_actions(node: Node) -> None:
 def test_the_services_of_an_action_can_be_watched(
     node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
 ) -> None:
-    """Each has a topic for that, on either side."""
+    """Each service has a topic for that, on either side."""
     server = Server(node)
     client = client_of(node)
     clock = Clock(clock_type=ClockType.SYSTEM_TIME)
@@ -502,7 +502,7 @@ def test_the_services_of_an_action_can_be_watched(
 
 
 def test_a_destroyed_server_is_not_found(node: Node) -> None:
-    """And its node goes on without it."""
+    """And its node continues without it."""
     server = Server(node)
     client = client_of(node)
 

@@ -1,4 +1,4 @@
-"""rclpy's API on aionode, where no other rclpy is at hand to compare with."""
+"""rclpy's API on aionode, where no other rclpy is available for comparison."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ LIMIT_S = 20.0
 
 @pytest.fixture
 def initialised(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Initialise the default context, and see that nothing of it is left afterwards."""
+    """Initialise the default context, and check that nothing of it is left afterwards."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     before = set(threading.enumerate())
@@ -81,7 +81,7 @@ def spin_until(node: Any, future: Any) -> Any:
 
 
 def test_few_lifespans_of_publishers_are_remembered() -> None:
-    """Messages may come with any number of invented gids."""
+    """Messages may arrive with any number of invented gids."""
     handle: Any = object.__new__(SubscriptionHandle)
     handle._lifespans = Recent(REMEMBERED_PUBLISHERS)
     handle.io = SimpleNamespace(call=lambda *_: 0)
@@ -94,7 +94,7 @@ def test_few_lifespans_of_publishers_are_remembered() -> None:
 @pytest.mark.usefixtures("initialised")
 @pytest.mark.parametrize("stamp_ns", [0, 2**62])
 def test_a_message_whose_stamp_says_nothing_lives_from_its_arrival_on(stamp_ns: int) -> None:
-    """As DDS says: its publisher gives no stamp, or its clock is ahead."""
+    """As in DDS: its publisher gives no stamp, or its clock is ahead."""
     node = rclpy.create_node("lifespan")
     subscription = node.create_subscription(String, "lifespan", print, 10)
     profile = QoSProfile(depth=1, lifespan=Duration(seconds=60))
@@ -142,7 +142,7 @@ def test_a_content_filter_can_be_set_read_and_taken_away() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_content_filter_lets_malformed_messages_pass(caplog: pytest.LogCaptureFixture) -> None:
-    """They are reported like those of any subscription; the transport that delivers goes on."""
+    """They are reported like those of any subscription; the transport continues."""
     node = rclpy.create_node("filtering")
     options = ContentFilterOptions("data = %0", ["'yes'"])
     subscription = node.create_subscription(
@@ -157,7 +157,7 @@ def test_a_content_filter_lets_malformed_messages_pass(caplog: pytest.LogCapture
 
 @pytest.mark.usefixtures("initialised")
 def test_what_cannot_be_read_is_counted_and_said(caplog: pytest.LogCaptureFixture) -> None:
-    """A request with another definition was refused without a word in the server's log."""
+    """A request with another definition used to be refused silently."""
     node = rclpy.create_node("reader")
     subscription = node.create_subscription(String, "words", print, 10)
     server = node.create_service(AddTwoInts, "add", lambda request, response: response)
@@ -180,7 +180,7 @@ def test_what_cannot_be_read_is_counted_and_said(caplog: pytest.LogCaptureFixtur
 @pytest.mark.usefixtures("initialised")
 @pytest.mark.parametrize("part", ["FeedbackMessage", "SendGoal", "GetResult"])
 def test_a_node_describes_the_types_of_its_actions(part: str) -> None:
-    """The action's own entities use them, as rcl sees it; bags and pages ask for them."""
+    """The action's own entities use them, as in rcl; bags and pages request them."""
     node = rclpy.create_node("walker")
     ActionServer(node, Fibonacci, "walk", print)
     client = node.create_client(GetTypeDescription, "/walker/get_type_description")
@@ -198,7 +198,7 @@ def test_a_node_describes_the_types_of_its_actions(part: str) -> None:
 @pytest.mark.usefixtures("initialised")
 @pytest.mark.parametrize("srv_type", [AddTwoInts, OwnAddTwoInts], ids=["rclpy's", "aionode's"])
 def test_events_of_services_have_stamps_in_either_family_of_messages(srv_type: Any) -> None:
-    """The clock of a node has rclpy's times, and the event the class of its own family."""
+    """A node's clock has rclpy's times, and the event a class of its own family."""
     node = rclpy.create_node("introspected")
     service = node.create_service(srv_type, "add", lambda _, response: response)
     service.configure_introspection(
@@ -218,7 +218,7 @@ def test_events_of_services_have_stamps_in_either_family_of_messages(srv_type: A
 
 @pytest.mark.usefixtures("initialised")
 def test_a_request_about_too_many_loggers_gets_an_empty_answer() -> None:
-    """Any node may send any number; the program's spin() goes on."""
+    """Any node may send any number; the program's spin() continues."""
     node = rclpy.create_node("loud", enable_logger_service=True)
     answers = {service.service_name: service.callback for service in node.services}
     request = GetLoggerLevels.Request(names=["loud"] * 1001)
@@ -230,7 +230,7 @@ def test_a_request_about_too_many_loggers_gets_an_empty_answer() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_clock_message_that_holds_no_time_is_left_out() -> None:
-    """Any node can publish on /clock; an exception would end the executor of each that follows."""
+    """Any node can publish on /clock; an exception would end the executor of each follower."""
     node = rclpy.create_node("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
     take = node._time_source.clock_callback
     for sec, nanosec in ((1, 0), (-1, 0), (5, 10**9), (2, 0)):
@@ -242,7 +242,7 @@ def test_a_clock_message_that_holds_no_time_is_left_out() -> None:
 def test_the_log_says_it_if_nobody_publishes_simulated_time(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Whether or not the node spins, as timers that stand still are all that would be seen."""
+    """Whether or not the node spins, because otherwise only stalled timers would be seen."""
     monkeypatch.setattr("aionode.engine.reports.simulated_time.WAIT_S", 0.0)
     node = rclpy.create_node("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
     ends_ns = perf_ns() + int(LIMIT_S * 1e9)
@@ -301,7 +301,7 @@ def test_a_call_in_a_callback_is_answered_by_another_executor() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_goal_has_feedback_and_a_result() -> None:
-    """The whole way of a goal, client and server in one executor."""
+    """The whole life of a goal, client and server in one executor."""
     node = rclpy.create_node("actions")
 
     def execute(goal_handle: Any) -> Any:
@@ -336,7 +336,7 @@ def test_a_goal_has_feedback_and_a_result() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_goal_that_waits_is_cancelled() -> None:
-    """A coroutine that awaits a future leaves the executor free for the request to cancel."""
+    """A coroutine that awaits a future leaves the executor free for the cancel request."""
     node = rclpy.create_node("cancelling")
     cancelled: Future[None] = Future()
 
@@ -374,7 +374,7 @@ def test_a_descriptor_of_the_other_family_keeps_its_ranges() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_request_for_too_many_parameters_gets_an_empty_answer() -> None:
-    """No peer is believed, and what it sends must not come out of the program's spin."""
+    """No peer is trusted, and its data must not make the program's spin raise."""
     node = rclpy.create_node("asked")
     client = node.create_client(GetParameters, "asked/get_parameters")
     assert client.wait_for_service(LIMIT_S)
@@ -386,7 +386,7 @@ def test_a_request_for_too_many_parameters_gets_an_empty_answer() -> None:
 
 @pytest.mark.usefixtures("initialised")
 def test_a_managed_publisher_is_silent_until_its_node_is_active() -> None:
-    """What is published before is dropped without a word, as in rclpy."""
+    """Messages published before are dropped silently, as in rclpy."""
     node = LifecycleNode("managed")
     got: list[str] = []
     node.create_subscription(String, "words", lambda msg: got.append(msg.data), 10)
@@ -463,7 +463,7 @@ async def test_an_async_node_needs_no_executor() -> None:
 
 @pytest.mark.usefixtures("initialised")
 async def test_an_async_node_calls_guard_conditions_that_it_creates_while_it_runs() -> None:
-    """Those of other entities that are created then are called, too."""
+    """Those of other entities created then are called, too."""
     async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):
         called = asyncio.Event()
 
@@ -518,7 +518,7 @@ if sys.argv[1] == "fail":
 def test_a_program_ends_however_it_ends(
     how: str, number: int | None, said: str, status: int, tmp_path: Path
 ) -> None:
-    """At its end, by a signal or an exception; without `shutdown`, and without a hang."""
+    """Regularly, by a signal or by an exception; without `shutdown`, and without a hang."""
     program = tmp_path / "ending.py"
     program.write_text(ENDING)
     process = start(
@@ -556,7 +556,7 @@ for number in range(5000):
 
 
 def test_a_program_that_ends_without_shutdown_drops_nothing(tmp_path: Path) -> None:
-    """A thread hands the messages to Zenoh, and still has many of them when the program ends."""
+    """A thread passes the messages to Zenoh, and still has many of them when the program ends."""
     program = tmp_path / "ending.py"
     program.write_text(ENDING_PUBLISHER)
     process = start(
@@ -574,7 +574,7 @@ def test_a_program_that_ends_without_shutdown_drops_nothing(tmp_path: Path) -> N
 
 @pytest.mark.usefixtures("initialised")
 def test_ten_thousand_calls_at_once_leave_nothing_behind() -> None:
-    """As in rclpy, only those within the server's depth are answered; none of the rest is kept."""
+    """As in rclpy, only those within the server's depth are answered; the rest are not kept."""
     node = rclpy.create_node("many")
     node.create_service(AddTwoInts, "many", lambda request, response: response)
     client = node.create_client(AddTwoInts, "many")
@@ -614,7 +614,7 @@ def lines_run(call: Callable[[], object], module: ModuleType) -> list[int]:
 
 @pytest.mark.usefixtures("initialised")
 def test_giving_a_request_up_costs_the_same_however_many_are_pending() -> None:
-    """A program that gives thousands of them up would wait for seconds otherwise."""
+    """Otherwise a program that gives up thousands of them would wait for seconds."""
     client = rclpy.create_node("many").create_client(AddTwoInts, "nobody_serves")
     few = [client.call_async(AddTwoInts.Request()) for _ in range(2)]
     lines_of_few = lines_run(partial(client.remove_pending_request, few[-1]), rclpy.client)

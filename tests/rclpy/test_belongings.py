@@ -1,4 +1,4 @@
-"""A library is a guest: whatever a program of rclpy has beside it is as before, however it ends.
+"""A library is a guest: everything else in an rclpy program is as before, however it ends.
 
 `belongings.py` has the ends and faults. Between looks at a record lock, a transaction of sqlite,
 pipes, a terminal, sockets, children, handlers of signals, the settings of the garbage collector and

@@ -18,7 +18,7 @@ def program(tmp_path: Path) -> Path:
 
 
 def findings(file: Path, source: str) -> tuple[dict[str, str], bool]:
-    """Return what is said of each import of a program, up to a colon, and whether all is there."""
+    """Return the report of each import of a program, up to a colon, and whether all exist."""
     file.write_text(source)
     text, complete = check([str(file)])
     first, *lines = text.splitlines()
@@ -28,7 +28,7 @@ def findings(file: Path, source: str) -> tuple[dict[str, str], bool]:
 
 
 def test_each_import_has_its_source(program: Path) -> None:
-    """Python's own modules are always there, and would hide the rest."""
+    """Python's own modules always exist, and would hide the rest."""
     (program.parent / "helper.py").write_text("raise SystemExit\n")
 
     found, complete = findings(
@@ -87,12 +87,12 @@ def test_packages_of_the_workspace_are_there(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_missing_is_found(program: Path, line: str, shown: str) -> None:
-    """Modules, names that aionode's do not have, and imports within functions."""
+    """Modules, names that aionode's modules lack, and imports within functions."""
     assert findings(program, line) == ({shown: "missing"}, False)
 
 
 def test_an_import_that_may_fail_is_optional(program: Path) -> None:
-    """The program has another way."""
+    """The program has an alternative."""
     source = "try:\n    import nothing_at_all\nexcept ImportError:\n    pass\n"
 
     assert findings(program, source) == ({"nothing_at_all": "missing, optional"}, True)
@@ -107,7 +107,7 @@ def test_imports_for_type_checkers_are_left_out(program: Path, condition: str) -
 
 
 def test_messages_beside_modules_of_the_same_package_are_there(tmp_path: Path) -> None:
-    """A package that generates messages may have modules in Python under its name as well."""
+    """A package that generates messages may also have Python modules under its name."""
     package = tmp_path / "src" / "own_robot"
     for folder in ("own_robot", "msg", "scripts"):
         (package / folder).mkdir(parents=True)
@@ -125,7 +125,7 @@ def test_messages_beside_modules_of_the_same_package_are_there(tmp_path: Path) -
 
 
 def test_a_folder_stands_for_its_programs(tmp_path: Path) -> None:
-    """Those of a package find one another; what a build has copied is left out."""
+    """The programs of a package find one another; copies made by a build are left out."""
     package = tmp_path / "src" / "my_robot" / "my_robot"
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
@@ -144,7 +144,7 @@ def test_a_folder_stands_for_its_programs(tmp_path: Path) -> None:
 
 
 def test_a_file_that_python_cannot_read_is_named(program: Path) -> None:
-    """The other files are listed all the same."""
+    """The other files are listed nevertheless."""
     program.write_text("def work(:\n")
 
     text, complete = check([str(program)])
@@ -194,7 +194,7 @@ def test_what_the_program_finds_is_there(program: Path, line: str) -> None:
     ],
 )
 def test_what_only_looks_like_a_module_is_missing(program: Path, line: str) -> None:
-    """The same ways, with a name that is not there."""
+    """The same ways, with a name that does not exist."""
     found, complete = findings(program, line)
 
     assert list(found.values()) == ["missing"]
@@ -231,7 +231,7 @@ def test_a_module_that_lacks_an_extra_is_missing(
 def test_the_own_modules_of_a_program_are_followed(
     program: Path, line: str, is_optional: bool
 ) -> None:
-    """What they import the program needs as well, unless it can do without them."""
+    """The program needs what they import, unless it can do without them."""
     (program.parent / "own").mkdir()
     (program.parent / "own" / "__init__.py").write_text("import numpy\n")
     (program.parent / "own" / "part.py").write_text("from . import part\nimport nothing_at_all\n")
@@ -274,7 +274,7 @@ def test_the_own_modules_of_a_program_are_followed(
 def test_what_ends_the_program_is_not_called_optional(
     program: Path, source: str, found: dict[str, str]
 ) -> None:
-    """The status of the check would say that it runs."""
+    """The check's status would say that it runs."""
     assert findings(program, source) == (found, False)
 
 
@@ -293,14 +293,14 @@ def test_what_ends_the_program_is_not_called_optional(
     ],
 )
 def test_what_does_not_happen_here_is_not_missed(program: Path, source: str) -> None:
-    """Programs have imports for older versions of Python, for other systems, and in reserve."""
+    """Programs have imports for older Python versions, for other systems, and as fallbacks."""
     _, complete = findings(program, source)
 
     assert complete
 
 
 def test_a_compiled_module_beside_the_program_is_there(program: Path) -> None:
-    """It is no source that could be examined."""
+    """It has no source that could be examined."""
     (program.parent / f"fast{EXTENSION_SUFFIXES[0]}").write_bytes(b"\0")
 
     assert findings(program, "import fast\n") == ({"fast": "beside the program"}, True)

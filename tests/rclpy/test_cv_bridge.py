@@ -43,7 +43,7 @@ def test_an_image_is_the_same_after_a_message(dtype: str, channels: tuple[int, .
 
 
 def test_the_encoding_is_that_of_opencv_unless_given() -> None:
-    """The names of channels cannot be seen in an array."""
+    """An array does not show the names of its channels."""
     header = Header(frame_id="camera")
 
     plain = BRIDGE.cv2_to_imgmsg(pixels(4, 6, 3))
@@ -53,7 +53,7 @@ def test_the_encoding_is_that_of_opencv_unless_given() -> None:
 
 
 def test_the_other_order_of_bytes_is_kept_in_the_message_and_undone_in_the_image() -> None:
-    """Programs compute with what they get."""
+    """Programs compute with the values."""
     image = pixels(3, 4).astype(">i4")
 
     message = BRIDGE.cv2_to_imgmsg(image)
@@ -112,7 +112,7 @@ def test_colours_and_depths_are_converted_without_opencv(
 
 
 def test_values_beyond_a_type_are_its_limits() -> None:
-    """OpenCV saturates, where numpy wraps around; halves are rounded to even."""
+    """OpenCV saturates, whereas numpy wraps around; halves are rounded to even."""
     image = np.array([[-5.0, 2.5, 3.5, 300.0, np.nan]], np.float32)
 
     converted = BRIDGE.imgmsg_to_cv2(BRIDGE.cv2_to_imgmsg(image), "8UC1")
@@ -156,7 +156,7 @@ def test_a_conversion_that_makes_no_sense_is_refused_in_the_words_of_cv_bridge(
 
 
 def test_an_image_of_another_type_than_its_encoding_is_refused() -> None:
-    """A message that says rgba8 of three channels could not be read."""
+    """A message that says rgba8 with three channels could not be read."""
     with pytest.raises(
         CvBridgeError, match="encoding specified as rgba8, but image has incompatible type 8UC3"
     ):
@@ -172,7 +172,7 @@ def test_only_arrays_are_images(convert: Any) -> None:
 
 @pytest.mark.parametrize("data", [b"", bytes(242)])
 def test_a_message_with_too_little_data_is_refused(data: bytes) -> None:
-    """No peer is believed; numpy does not look at the size of an empty buffer."""
+    """No peer is trusted; numpy does not check the size of an empty buffer."""
     with pytest.raises(TypeError, match="its size needs 243"):
         BRIDGE.imgmsg_to_cv2(Image(encoding="rgb8", height=9, width=9, step=27, data=data))
 
@@ -197,7 +197,7 @@ def test_what_needs_opencv_says_so_when_it_is_used(monkeypatch: pytest.MonkeyPat
 
 
 def test_an_image_for_a_screen_is_scaled_or_coloured() -> None:
-    """Depths and labels cannot be seen as they are."""
+    """Depths and labels cannot be seen directly."""
     depths = np.array([[0.0, 1.0, np.inf]], np.float32)
     labels = np.arange(12, dtype=np.int32).reshape(3, 4)
 
@@ -217,7 +217,7 @@ def test_an_image_for_a_screen_is_scaled_or_coloured() -> None:
 @pytest.mark.parametrize("ending", ["jpg", "png", "bmp", "tiff"])
 @pytest.mark.parametrize("channels", [(), (3,)])
 def test_an_image_is_compressed_and_read_again(ending: str, channels: tuple[int, ...]) -> None:
-    """The message has the format by its ending."""
+    """The message has the format of the file extension."""
     pytest.importorskip("cv2")
     image = pixels(8, 8, *channels)
 
@@ -232,7 +232,7 @@ def test_an_image_is_compressed_and_read_again(ending: str, channels: tuple[int,
 
 
 def test_data_that_is_no_image_is_refused() -> None:
-    """A camera that breaks off in the middle."""
+    """Such as from a camera that breaks off in the middle."""
     pytest.importorskip("cv2")
 
     with pytest.raises(CvBridgeError, match="5 bytes of the format 'jpeg' are no image"):

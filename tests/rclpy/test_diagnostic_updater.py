@@ -1,4 +1,4 @@
-"""`diagnostic_updater`, as programs of rclpy use it."""
+"""`diagnostic_updater`, as used by rclpy programs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 def test_an_updater_publishes_while_its_node_spins(node: Any) -> None:
-    """With the messages of rclpy; a task of the program need only have a name and `run`."""
+    """With rclpy's messages; a task of the program only needs a name and `run`."""
     heard: list[Any] = []
     node.create_subscription(DiagnosticArray, "/diagnostics", heard.append, 10)
     updater = diagnostic_updater.Updater(node, 0.05)
@@ -66,7 +66,7 @@ def test_an_updater_publishes_while_its_node_spins(node: Any) -> None:
 
 
 def test_an_update_can_be_forced(node: Any) -> None:
-    """It is a function here; a task that raises is an error, and the program goes on."""
+    """It is a function here; a task that raises is an error, and the program continues."""
     heard: list[Any] = []
     node.create_subscription(DiagnosticArray, "/diagnostics", heard.append, 10)
     updater = diagnostic_updater.Updater(node, 1000.0)
@@ -84,7 +84,7 @@ def test_an_update_can_be_forced(node: Any) -> None:
 
 
 def test_a_status_is_a_message() -> None:
-    """Programs make one by its fields, as of any message."""
+    """Programs create one from its fields, like any message."""
     stat = diagnostic_updater.DiagnosticStatusWrapper(name="x", level=DiagnosticStatus.ERROR)
 
     assert isinstance(stat, DiagnosticStatus)

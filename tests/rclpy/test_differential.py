@@ -1,4 +1,4 @@
-"""The same scenes on rclpy and on aionode: what can be seen of them is the same.
+"""The same scenes on rclpy and on aionode, with the same visible results.
 
 The files whose names end in ``scenarios.py`` have the scenes. ``expected.json`` is what rclpy 9.1.2
 (ROS 2 Kilted) shows. With the path of an interpreter that has rclpy in ``RCLPY_PYTHON`` it is asked
@@ -34,11 +34,11 @@ NAMES = [
     for name in re.findall(r"^@scene\ndef (\w+)", file.read_text(encoding="utf-8"), re.MULTILINE)
 ]
 PROCESSES = 4
-"""How many processes play at the same time, as most scenes wait most of the time."""
+"""Number of processes that play at the same time, since most scenes mostly wait."""
 
 
 def play(*command: str, environments: list[dict[str, str]]) -> dict[str, Any]:
-    """Return the traces of all scenes, played in a process for each environment."""
+    """Return the traces of all scenes, with one process per environment."""
     with ThreadPoolExecutor() as pool:
         parts = pool.map(
             lambda number: play_some(
@@ -66,7 +66,7 @@ def play_some(*command: str, environment: dict[str, str]) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def played() -> dict[str, Any]:
-    """Return what aionode shows."""
+    """Return aionode's traces."""
     environments = [isolated_environment() for _ in range(PROCESSES)]
     return play(sys.executable, "-m", "aionode.rclpy", str(PROGRAM), environments=environments)
 
@@ -84,7 +84,7 @@ def test_a_scene_shows_what_it_shows_on_rclpy(name: str, played: dict[str, Any])
     reason=f"{INTERPRETER} is not set: no interpreter that has rclpy to compare with",
 )
 def test_rclpy_shows_what_is_expected() -> None:
-    """What aionode is compared with is what rclpy does, not what was once written down."""
+    """The comparison is with what rclpy does, not with what was once written down."""
     environments = [
         {"ROS_DOMAIN_ID": str(domain_id), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         for domain_id in range(87, 87 + PROCESSES)

@@ -64,14 +64,14 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_it_has_every_package_that_aionode_supplies(wheel: Path) -> None:
-    """A package that it lacks could be imported only after another one."""
+    """A package that it lacks could only be imported after another one."""
     packages = {name.partition("/")[0] for name in files_in(wheel)}
 
     assert packages == shipped_packages() | SUPPLIED
 
 
 def test_its_message_packages_do_one_thing() -> None:
-    """What they have is in aionode, so that both need no release at the same time."""
+    """Their contents are in aionode, so that both need no release at the same time."""
     sources = {path.read_text() for path in (DISTRIBUTION / "src").glob("*/__init__.py")}
     codes = {"\n".join(map(ast.unparse, ast.parse(source).body[1:])) for source in sources}
 
@@ -80,7 +80,7 @@ def test_its_message_packages_do_one_thing() -> None:
 
 @pytest.mark.timeout(180)
 def test_a_wheel_of_its_sdist_has_the_same_files(wheel: Path, tmp_path: Path) -> None:
-    """The sdist is built elsewhere, where aionode's repository is not beside it."""
+    """The sdist is built elsewhere, without aionode's repository beside it."""
     (tmp_path / "built").mkdir()
     sdist = built("sdist", DISTRIBUTION, tmp_path / "built")
     shutil.unpack_archive(sdist, tmp_path / "source", filter="data")
@@ -91,7 +91,7 @@ def test_a_wheel_of_its_sdist_has_the_same_files(wheel: Path, tmp_path: Path) ->
 
 
 def test_a_program_runs_with_its_wheel(wheel: Path, tmp_path: Path) -> None:
-    """By ``python program.py``; with `install` besides, each module is still there once."""
+    """By ``python program.py``; with `install` as well, each module still exists once."""
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
 
@@ -107,7 +107,7 @@ def test_a_program_runs_with_its_wheel(wheel: Path, tmp_path: Path) -> None:
 
 
 def test_it_is_not_taken_for_ros(monkeypatch: pytest.MonkeyPatch) -> None:
-    """`install` says which rclpy is used only where there are two."""
+    """`install` only says which rclpy is used if there are two."""
     monkeypatch.syspath_prepend(FOLDER)
 
     assert rclpy_of_ros() is None

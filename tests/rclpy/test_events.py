@@ -1,4 +1,4 @@
-"""Events of rclpy's publishers and subscriptions, where no other rclpy is at hand."""
+"""Events of rclpy's publishers and subscriptions, where no other rclpy is available."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PATIENCE_S = 20.0
 
 @pytest.fixture
 def contexts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[rclpy.Context]]:
-    """Two contexts that hear each other, and nothing else on the machine."""
+    """Two contexts that are connected to each other, and to nothing else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     contexts = [rclpy.Context(), rclpy.Context()]
@@ -34,7 +34,7 @@ def contexts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[rclpy.Context]]:
 
 
 def until(events: list[Any], count: int, *nodes: Node) -> None:
-    """Spin until so many events have come."""
+    """Spin until a number of events have arrived."""
     executors = [SingleThreadedExecutor(context=node.context) for node in nodes]
     for node, executor in zip(nodes, executors, strict=True):
         executor.add_node(node)
@@ -68,7 +68,7 @@ def test_another_context_whose_qos_does_not_fit_is_an_event(
 
 
 def test_another_type_is_an_event_of_both_sides(contexts: list[rclpy.Context]) -> None:
-    """Each has its own callback for it."""
+    """Each side has its own callback for it."""
     node = Node("node", context=contexts[0])
     told: list[Any] = []
     node.create_publisher(
@@ -88,7 +88,7 @@ def test_another_type_is_an_event_of_both_sides(contexts: list[rclpy.Context]) -
 
 
 def test_changes_add_up_until_they_are_taken(contexts: list[rclpy.Context]) -> None:
-    """An executor that was busy learns of all of them at once."""
+    """A busy executor gets all of them at once."""
     node = Node("node", context=contexts[0])
     matched: list[Any] = []
     node.create_publisher(
@@ -141,7 +141,7 @@ def test_a_publisher_that_gives_no_sign_within_the_lease_is_not_alive(
 def test_a_message_that_comes_late_makes_no_other_one_lost(
     contexts: list[rclpy.Context],
 ) -> None:
-    """A message that was sent again comes behind newer ones; those were counted before."""
+    """A resent message arrives after newer ones, which were counted before."""
     node = Node("node", context=contexts[0])
     lost: list[Any] = []
     callbacks = SubscriptionEventCallbacks(message_lost=lost.append)

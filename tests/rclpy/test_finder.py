@@ -41,7 +41,7 @@ def words(tmp_path: Path) -> Path:
 
 @pytest.mark.usefixtures("installed")
 def test_message_packages_are_there() -> None:
-    """The import that stands at the top of every program."""
+    """The import at the top of every program."""
     module = importlib.import_module("std_msgs.msg")
 
     assert module.String is message_class("std_msgs/msg/String")
@@ -51,7 +51,7 @@ def test_message_packages_are_there() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_the_modules_of_a_message_package_need_no_import() -> None:
-    """In ROS they are loaded as soon as another message is made of theirs."""
+    """In ROS they are loaded as soon as another message is created from theirs."""
     package = importlib.import_module("std_msgs")
 
     assert package.msg.Bool is message_class("std_msgs/msg/Bool")
@@ -61,7 +61,7 @@ def test_the_modules_of_a_message_package_need_no_import() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_the_module_of_one_message_is_there() -> None:
-    """Rosbridge and pickle import it by the name that the class gives."""
+    """Rosbridge and pickle import it by the name that the class reports."""
     module = importlib.import_module("std_msgs.msg._multi_array_layout")
 
     assert module.MultiArrayLayout is message_class("std_msgs/msg/MultiArrayLayout")
@@ -101,7 +101,7 @@ def test_the_parts_of_services_and_actions_are_there() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_messages_can_be_pickled() -> None:
-    """They go to other processes by multiprocessing, or into files."""
+    """They are sent to other processes by multiprocessing, or stored in files."""
     message = message_class("std_msgs/msg/Header")(frame_id="map")
 
     assert pickle.loads(pickle.dumps(message)) == message  # noqa: S301 (its own)
@@ -156,7 +156,7 @@ def test_a_class_that_is_not_there_is_missed_as_usual() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_messages_of_a_folder_need_no_build(words: Path) -> None:
-    """A workspace's packages are there as soon as its folder is named."""
+    """A workspace's packages are available as soon as its folder is named."""
     aionode.rclpy.install(interfaces=[words])
 
     module = importlib.import_module("find_words_msgs.msg")
@@ -169,7 +169,7 @@ def test_messages_of_a_folder_need_no_build(words: Path) -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_folders_of_messages_are_read_when_they_are_used(tmp_path: Path) -> None:
-    """Their order does not matter, and a definition that is not valid harms nobody else."""
+    """Their order does not matter, and an invalid definition affects nothing else."""
     write_message(tmp_path / "one/late_words_msgs/msg/Words.msg", "late_score_msgs/Score best\n")
     write_message(tmp_path / "one/late_words_msgs/msg/Lost.msg", "no_such_msgs/Thing thing\n")
     write_message(tmp_path / "one/late_words_msgs/msg/Broken.msg", "what is this?\n")
@@ -188,7 +188,7 @@ def test_folders_of_messages_are_read_when_they_are_used(tmp_path: Path) -> None
 
 @pytest.mark.usefixtures("installed")
 def test_the_first_of_two_equal_names_wins_with_a_warning(tmp_path: Path) -> None:
-    """A copy of the same text is none of them: a workspace has its source and what it installs."""
+    """Copies of the same text do not count: a workspace has its source and its installation."""
     write_message(tmp_path / "one/twice_msgs/msg/Words.msg", "int8 first\n")
     write_message(tmp_path / "two/twice_msgs/msg/Words.msg", "int8 second\n")
     write_message(tmp_path / "two/same_msgs/msg/Words.msg", "int8 same\n")
@@ -208,7 +208,7 @@ def test_the_first_of_two_equal_names_wins_with_a_warning(tmp_path: Path) -> Non
 def test_an_installed_package_may_use_messages_of_a_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The folder is named for the one package that the sourced workspace does not have."""
+    """The folder is named for the one package that the sourced workspace lacks."""
     write_message(tmp_path / "share/outer_msgs/msg/Words.msg", "inner_msgs/Score best\n")
     write_message(tmp_path / "named/inner_msgs/msg/Score.msg", "float32 value 0.5\n")
     write_message(tmp_path / "named/inner_msgs/msg/Broken.msg", "what is this?\n")
@@ -249,7 +249,7 @@ def write_message(file: Path, text: str) -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_installed_packages_need_no_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """AMENT_PREFIX_PATH leads to them, and what they use is loaded first."""
+    """AMENT_PREFIX_PATH leads to them, and their dependencies are loaded first."""
     for package, name, text in (
         ("share_words_msgs", "Words", "share_score_msgs/Score best\n"),
         ("share_score_msgs", "Score", "float32 value 0.5\n"),
@@ -282,7 +282,7 @@ def test_python_modules_beside_messages_stay(
 
 
 def test_another_rclpy_that_is_imported_is_not_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A program with classes of both would fail later, in places that say nothing."""
+    """A program with classes of both would fail later, in unhelpful places."""
     other = ModuleType("rclpy")
     other.__file__ = "/opt/ros/rclpy/__init__.py"
     monkeypatch.setitem(sys.modules, "rclpy", other)
@@ -303,7 +303,7 @@ def ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_an_installed_rclpy_is_not_passed_over_in_silence(
     ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Users who have ROS 2 as well see which of the two runs."""
+    """Users who also have ROS 2 see which of the two runs."""
     with without_ros():
         aionode.rclpy.install()
 
@@ -313,7 +313,7 @@ def test_an_installed_rclpy_is_not_passed_over_in_silence(
 def test_an_installed_rclpy_can_be_preferred(
     ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Tests of a package run with ROS where it is, and with aionode elsewhere."""
+    """Tests of a package run with ROS if it is installed, and with aionode elsewhere."""
     with without_ros(), caplog.at_level(logging.INFO):
         aionode.rclpy.install(prefer_ros=True)
         assert _finder.FINDER not in sys.meta_path
@@ -322,7 +322,7 @@ def test_an_installed_rclpy_can_be_preferred(
 
 
 def test_aionode_itself_imports_none_of_this() -> None:
-    """Only programs of rclpy pay for it."""
+    """Only rclpy programs pay for it."""
     program = "import aionode, sys; print([name for name in sys.modules if 'rclpy' in name])"
 
     done = subprocess.run(
@@ -337,7 +337,7 @@ def test_aionode_itself_imports_none_of_this() -> None:
     ("module", "name"), [("rclpy.executors", "Lock"), ("rclpy.node", "time"), ("tf2_ros", "sleep")]
 )
 def test_what_modules_import_of_python_itself_is_not_theirs(module: str, name: str) -> None:
-    """No public program was seen to take it from there; it can be imported from Python."""
+    """No public program was seen to use it from there; it can be imported from Python."""
     with pytest.raises(AttributeError, match=f"module '{module}' has no attribute '{name}'"):
         getattr(importlib.import_module(module), name)
 
@@ -363,5 +363,5 @@ def test_a_time_of_tf2_is_one_of_rclpy() -> None:
     ],
 )
 def test_a_class_of_launch_has_a_module_of_its_own(module: str, name: str) -> None:
-    """As in ROS, where each class and function is in a file that is named after it."""
+    """As in ROS, where each class and function is in a file named after it."""
     assert callable(getattr(importlib.import_module(module), name))

@@ -71,7 +71,7 @@ print(json.dumps(said), flush=True)
 
 
 def test_a_forked_child_is_told_that_it_cannot_use_the_context() -> None:
-    """It has neither the thread that sends nor sockets of its own; the parent is not disturbed."""
+    """It has neither the sending thread nor sockets of its own; the parent is not disturbed."""
     process = subprocess.run(
         [sys.executable, "-m", "aionode.rclpy", "/dev/stdin"],
         input=PROGRAM,

@@ -1,4 +1,4 @@
-"""Classes of ROS's packages leave users the names that the real ones leave them."""
+"""Classes of ROS's packages leave the same names to users as the real ones."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REAL: dict[tuple[str, str], dict[str, list[str]]] = {
         (Path(__file__).parent / "class_names.jsonl").read_text("utf-8").splitlines(),
     )
 }
-"""The classes of ROS's packages, by package and name: their bases, and the names they have."""
+"""The classes of ROS's packages, by package and name: their bases, and their names."""
 
 NEWER = {
     "_spin_once_impl",
@@ -33,7 +33,7 @@ NEWER = {
     "get_servers_info_by_service",
     "is_spinning",
 }
-"""Names that these classes have got since."""
+"""Names that these classes have gained since."""
 
 OF_ROS = {
     "rclpy": {
@@ -58,17 +58,18 @@ OF_ROS = {
     "launch": None,
     "launch_ros": None,
 }
-"""The same of ROS's packages; None for all that the package in ROS has, too."""
+"""The corresponding packages of ROS; None for everything that the package in ROS has, too."""
 
 NOT_INHERITED = {"LaunchContext", "LaunchService", "ProcessStdin"}
-"""What launch makes, and hands to those who inherit; the last is an event of another kind there."""
+"""Objects that launch creates and passes to subclasses; the last is an event of another kind
+there."""
 
 BELOW = {"launch_ros": "launch", "tf2_ros": "tf2_py"}
-"""Where else a package has the bases of its classes from."""
+"""Other packages from which a package takes the bases of its classes."""
 
 
 def real_names(package: str, name: str) -> set[str]:
-    """Return the names that a class of ROS and its bases take."""
+    """Return the names that a class of ROS and its bases use."""
     while (package, name) not in REAL:
         if package not in BELOW:
             return set()
@@ -79,7 +80,7 @@ def real_names(package: str, name: str) -> set[str]:
 
 
 def ours(module: str, name: str) -> Any:
-    """Return a subclass, with methods of a robot's own, of a class of ROS."""
+    """Return a subclass of a ROS class, with a robot's own methods."""
     cls = getattr(importlib.import_module(module), name)
     return robots(cls, real_names(module.partition(".")[0], name))
 
@@ -106,7 +107,7 @@ def modules_of(package: str) -> Iterator[Any]:
 @pytest.mark.usefixtures("rclpy")
 @pytest.mark.parametrize("package", OF_ROS)
 def test_classes_of_ros_take_no_names_that_the_real_ones_leave_free(package: str) -> None:
-    """A node with methods of its own such as `_init_parameters` is what most robots have."""
+    """Most robots have a node with their own methods, such as `_init_parameters`."""
     chosen = OF_ROS[package]
     taken: dict[str, set[str]] = {}
     for module in modules_of(package):
@@ -139,7 +140,7 @@ def test_a_node_works_whatever_methods_of_its_own_it_has() -> None:
 
 @pytest.mark.usefixtures("rclpy")
 def test_a_synchronizer_of_rclpy_works_whatever_methods_of_its_own_it_has() -> None:
-    """Programs inherit from it to look at what comes in."""
+    """Programs inherit from it to inspect incoming messages."""
     point = importlib.import_module("geometry_msgs.msg").PointStamped
     inputs = [ours("message_filters", "SimpleFilter")() for _ in range(2)]
     pairs = ours("message_filters", "ApproximateTimeSynchronizer")(inputs, 10, 0.1)
@@ -154,7 +155,7 @@ def test_a_synchronizer_of_rclpy_works_whatever_methods_of_its_own_it_has() -> N
 
 @pytest.mark.usefixtures("rclpy")
 def test_a_buffer_of_rclpy_works_whatever_methods_of_its_own_it_has() -> None:
-    """A buffer of a robot may have a `_lock` of its own."""
+    """A robot's buffer may have its own `_lock`."""
     transform = importlib.import_module("geometry_msgs.msg").TransformStamped
     tf2_ros: Any = importlib.import_module("tf2_ros")
     stamped = transform(child_frame_id="b")
@@ -169,7 +170,7 @@ def test_a_buffer_of_rclpy_works_whatever_methods_of_its_own_it_has() -> None:
 
 @pytest.mark.usefixtures("rclpy")
 def test_what_launch_files_inherit_from_works_whatever_methods_it_has() -> None:
-    """Packages have actions, substitutions and handlers of their own."""
+    """Packages have their own actions, substitutions and handlers."""
     actions: Any = importlib.import_module("launch.actions")
     text = ours("launch.substitutions", "TextSubstitution")(text="x")
     node = ours("launch_ros.actions", "Node")(executable="talker", name=text, respawn=True)

@@ -1,4 +1,4 @@
-"""Handles and what wakes threads: used by several threads, and by handlers of signals."""
+"""Handles and the wake-ups of threads: used by several threads, and by signal handlers."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ pytestmark = pytest.mark.timeout(60)
 
 @pytest.fixture
 def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Limit what waits in contexts that are made from now on."""
+    """Limit what waits in contexts created from now on."""
     monkeypatch.setenv("AIONODE_QUEUE_BYTES", "65536")
 
 
 @pytest.fixture
 def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
-    """A context out of earshot."""
+    """An isolated context."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     context = rclpy.Context()
@@ -46,7 +46,7 @@ def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
 
 @contextmanager
 def hasty_threads() -> Iterator[None]:
-    """Change threads after nearly each bytecode."""
+    """Switch threads after nearly each bytecode."""
     interval_s = sys.getswitchinterval()
     sys.setswitchinterval(1e-7)
     try:
@@ -56,7 +56,7 @@ def hasty_threads() -> Iterator[None]:
 
 
 def at_once(*works: Callable[[], object]) -> None:
-    """Do works in threads, each many times."""
+    """Run functions in threads, each many times."""
 
     def repeat(work: Callable[[], object]) -> None:
         for _ in range(TIMES):
@@ -71,7 +71,7 @@ def at_once(*works: Callable[[], object]) -> None:
 
 
 def test_a_signal_loses_no_update_of_another_thread() -> None:
-    """An executor that is lost there never wakes again."""
+    """An executor whose wake-up is lost would never wake again."""
     signal = Signal()
     mine, others = Wakeup(), [Wakeup() for _ in range(3)]
 
@@ -86,7 +86,7 @@ def test_a_signal_loses_no_update_of_another_thread() -> None:
 
 
 def test_a_handle_is_destroyed_once_by_its_last_user() -> None:
-    """Whether a thread, or a handler of a signal that interrupts one, asks for it."""
+    """Whether a thread, or a signal handler that interrupts one, requests it."""
     destroyed: list[str] = []
 
     class Handle(Destroyable):
@@ -107,7 +107,7 @@ def test_a_handle_is_destroyed_once_by_its_last_user() -> None:
 
 
 def test_a_long_wait_consists_of_several(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One wait of the system is limited; that of the program ends no earlier for it."""
+    """One wait of the system is limited; that of the program does not end earlier because of it."""
     monkeypatch.setattr(destroyable, "LONGEST_WAIT_S", 0.001)
     wakeup = Wakeup()
     threading.Timer(0.05, wakeup.wake).start()
@@ -132,7 +132,7 @@ def test_timers_and_time_limits_of_months_can_be_waited_for(context: rclpy.Conte
 
 
 def test_subscriptions_come_and_go_while_another_thread_publishes(context: rclpy.Context) -> None:
-    """The publisher looks at each of them, and one that keeps all has to have room."""
+    """The publisher checks each of them, and one that keeps all messages has to have room."""
     node = rclpy.create_node("changing", context=context)
     publisher = node.create_publisher(Int32, "numbers", 10)
     profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -166,7 +166,7 @@ def test_subscriptions_come_and_go_while_another_thread_publishes(context: rclpy
 
 
 def test_who_waits_for_room_learns_of_room_that_was_made_before(context: rclpy.Context) -> None:
-    """The program may take the last message between the look and the wait, in its own thread."""
+    """The program may take the last message between the check and the wait, in its own thread."""
     node = rclpy.create_node("full", context=context)
     profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     subscription = node.create_subscription(Int32, "numbers", lambda _: None, profile)
@@ -182,7 +182,7 @@ def test_who_waits_for_room_learns_of_room_that_was_made_before(context: rclpy.C
 def test_the_log_says_once_that_messages_for_a_subscription_are_too_large_together(
     context: rclpy.Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Else nobody learns why messages are missing that the depth would hold."""
+    """Otherwise nobody learns why messages are missing that the depth would hold."""
     node = rclpy.create_node("node", context=context)
     handle = node.create_subscription(Int32, "heavy", print, 100).handle
 
@@ -198,7 +198,7 @@ def test_the_log_says_once_that_messages_for_a_subscription_are_too_large_togeth
 def test_the_log_says_once_that_requests_for_a_service_are_too_large_together(
     context: rclpy.Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As for messages; the clients of the oldest ones learn that these were dropped."""
+    """As for messages; the clients of the oldest ones are told that these were dropped."""
     node = rclpy.create_node("node", context=context)
     handle: Any = node.create_service(ListParameters, "heavy", print).handle
     dropped: list[int] = []

@@ -42,7 +42,7 @@ pytestmark = pytest.mark.one_loop
 
 @pytest.fixture(autouse=True)
 def alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing else on the machine is heard."""
+    """Isolated from everything else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
 
@@ -69,7 +69,7 @@ class Side:
             self.executor.spin()
 
     def add(self, node: Any) -> Any:
-        """Spin a node, too."""
+        """Spin another node."""
         self.executor.add_node(node)
         return node
 
@@ -91,7 +91,7 @@ def side(alone: None) -> Iterator[Side]:
 
 
 async def result_of(future: Any) -> Any:
-    """Return what a future of rclpy's API becomes."""
+    """Return the result of a future of rclpy's API."""
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
     assert await asyncio.to_thread(done.wait, PATIENCE_S)
@@ -120,7 +120,7 @@ def work(goal_handle: Any) -> Any:
 
 @pytest.fixture
 def serve(side: Side) -> Callable[..., ActionServer[Any, Any, Any]]:
-    """Return a function that makes an action server of rclpy's API."""
+    """Return a function that creates an action server with rclpy's API."""
 
     def make(**options: Any) -> ActionServer[Any, Any, Any]:
         node = side.add(RclpyNode("server", context=side.context))
@@ -138,7 +138,7 @@ def serve(side: Side) -> Callable[..., ActionServer[Any, Any, Any]]:
 async def test_aionode_s_client_gets_feedback_and_result(
     native: Node, serve: Callable[..., Any]
 ) -> None:
-    """What a program with rclpy's API serves, one with aionode's uses as any action."""
+    """A program with aionode's API uses a server with rclpy's like any other."""
     serve()
     client = native.create_action_client(Fibonacci, "fibonacci")
     await client.wait_for_server(PATIENCE_S)
@@ -178,7 +178,7 @@ async def test_aionode_s_client_learns_that_a_goal_is_rejected(
 async def test_aionode_s_client_learns_why_a_goal_is_rejected(
     native: Node, serve: Callable[..., Any]
 ) -> None:
-    """A goal callback of rclpy's API may raise what says it, and rejects the goal for others."""
+    """A goal callback of rclpy's API may raise the reason; other clients get a rejection."""
 
     def judge(_goal: Any) -> GoalResponse:
         raise GoalRejected("too far: 12 m of at most 5")
@@ -231,7 +231,7 @@ def client(native: Node, side: Side) -> ActionClient[Any, Any, Any]:
 async def test_rclpy_s_client_gets_feedback_and_result(
     client: ActionClient[Any, Any, Any],
 ) -> None:
-    """What a program with aionode's API serves, one with rclpy's uses as any action."""
+    """A program with rclpy's API uses a server with aionode's like any other."""
     feedback: list[list[int]] = []
     assert await asyncio.to_thread(client.wait_for_server, PATIENCE_S)
 
@@ -264,7 +264,7 @@ async def test_rclpy_s_client_cancels_a_goal(client: ActionClient[Any, Any, Any]
 
 
 async def test_aionode_s_manager_manages_a_node_of_rclpy_s_api(native: Node, side: Side) -> None:
-    """Its callbacks run, its publisher works while it is active, and its transitions are told."""
+    """Its callbacks run, its publisher works while active, and its transitions are published."""
     called: list[str] = []
 
     class Talker(rclpy_lifecycle.Node):
@@ -304,7 +304,7 @@ async def test_aionode_s_manager_manages_a_node_of_rclpy_s_api(native: Node, sid
 async def test_a_program_with_rclpy_s_api_manages_a_node_of_aionode(
     native: Node, side: Side
 ) -> None:
-    """Its services answer, and a label wins over a number."""
+    """Its services answer, and a label takes precedence over a number."""
     called: list[str] = []
 
     class Managed(LifecycleNode):

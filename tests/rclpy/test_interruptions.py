@@ -1,7 +1,7 @@
-"""Handlers of signals, and finalizers, use what the thread they interrupt is just using.
+"""Signal handlers and finalizers use objects that the interrupted thread is just using.
 
-`interruptions.py` has the programs. In rclpy a call is one of C, which nothing interrupts; here
-nothing may hang, be lost, or leave a context that no longer hears.
+`interruptions.py` has the programs. In rclpy a call is a single C call, which nothing interrupts;
+here nothing may hang, be lost, or leave a context that no longer receives.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ pytestmark = [
 
 
 def run(name: str) -> dict[str, Any]:
-    """Return what a program says. Its lines are not counted: that takes minutes."""
+    """Return the output of a program. Its lines are not counted: that takes minutes."""
     counting = {name: "" for name in os.environ if name.startswith("COVERAGE_PROCESS")}
     process = fork_server.run(
         ["-m", "aionode.rclpy", str(PROGRAM), name],
@@ -49,14 +49,14 @@ def test_a_handler_publishes_while_the_main_thread_publishes() -> None:
 
 
 def test_a_handler_asks_while_the_main_thread_publishes_or_spins() -> None:
-    """The answer comes over a link, which some thread has to read."""
+    """The answer arrives over a link, which some thread has to read."""
     assert run("asks") == {"answers": True}
 
 
 def test_a_handler_that_interrupts_the_look_at_handlers_may_wait(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The main thread looks whether it may do work; what it does then has not begun yet."""
+    """The main thread checks whether it may do work; its work has not begun yet."""
 
     def interrupted_look() -> bool:
         uninterrupted.refuse_to_wait()
@@ -68,21 +68,21 @@ def test_a_handler_that_interrupts_the_look_at_handlers_may_wait(
 
 
 def test_a_handler_creates_and_destroys_entities_while_the_main_thread_does() -> None:
-    """What is left is what the program had before, with the topic of its parameters."""
+    """In the end there is only what the program had before, with the topic of its parameters."""
     assert run("makes_entities") == {"left": [3, 1]}
 
 
 def test_a_handler_raises_at_any_place() -> None:
-    """A handler that ends a program does: what comes after it is sent and heard."""
+    """Like a handler that ends a program: messages sent after it are received."""
     assert run("raises") == WELL
 
 
 def test_a_handler_that_puts_itself_off_raises_at_any_place() -> None:
-    """As rclpy's own does: with it, the main thread sends and reads itself."""
+    """Like rclpy's own: with it, the main thread sends and reads itself."""
     assert run("puts_itself_off") == WELL
 
 
 @pytest.mark.parametrize("does", ["publishes", "asks"])
 def test_a_finalizer_communicates_at_any_place(does: str) -> None:
-    """The garbage collector calls it anywhere; where it cannot wait for an answer, it is told."""
+    """The garbage collector calls it anywhere; where it cannot wait, it gets an error."""
     assert run(f"finalizer_{does}") == WELL

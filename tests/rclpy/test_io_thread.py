@@ -1,4 +1,4 @@
-"""The thread in which a context of rclpy talks to others."""
+"""The thread in which a context of rclpy communicates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rclpy._impl.io_thread import IoThread
 
 @pytest.mark.timeout(30)
 def test_a_thread_that_is_still_opening_can_be_stopped() -> None:
-    """Ctrl-C may interrupt `rclpy.init` there, and what it leaves is closed at once."""
+    """Ctrl-C may interrupt `rclpy.init` there, and the thread is then closed at once."""
     opening, may_open = threading.Event(), threading.Event()
 
     class SlowContext(Context):

@@ -41,7 +41,7 @@ def stamped(sec: float) -> Any:
 
 
 def collected(filter_: Any) -> list[tuple[Any, ...]]:
-    """The list of what a filter gives."""
+    """The list of a filter's output."""
     found: list[tuple[Any, ...]] = []
     filter_.registerCallback(lambda *messages: found.append(messages))
     return found
@@ -89,7 +89,7 @@ def test_any_order_of_arrival_gives_the_same_pairs() -> None:
 
 
 def test_messages_that_are_near_enough_come_together() -> None:
-    """The slop is in seconds, and is not reached."""
+    """The slop is in seconds, and exclusive."""
     inputs = [message_filters.SimpleFilter(), message_filters.SimpleFilter()]
     found = collected(message_filters.ApproximateTimeSynchronizer(inputs, 5, 0.1))
 
@@ -101,7 +101,7 @@ def test_messages_that_are_near_enough_come_together() -> None:
 
 
 def test_messages_without_a_stamp_have_the_time_of_their_arrival() -> None:
-    """If the program says so; else they are left out."""
+    """If the program allows it; otherwise they are left out."""
     for allowed, count in ((True, 1), (False, 0)):
         inputs = [message_filters.SimpleFilter(), message_filters.SimpleFilter()]
         synchronizer = message_filters.ApproximateTimeSynchronizer(inputs, 5, 60.0, allowed)
@@ -114,7 +114,7 @@ def test_messages_without_a_stamp_have_the_time_of_their_arrival() -> None:
 
 
 def test_a_cache_answers_in_times_of_rclpy() -> None:
-    """Which can be compared with those of a clock."""
+    """They can be compared with those of a clock."""
     cache = message_filters.Cache(message_filters.SimpleFilter(), 5)
     for sec in range(6):
         cache.add(stamped(sec))
@@ -128,7 +128,7 @@ def test_a_cache_answers_in_times_of_rclpy() -> None:
 
 
 def test_a_stamp_may_be_a_time_of_rclpy() -> None:
-    """Programs give messages of their own."""
+    """Programs pass their own messages."""
     cache = message_filters.Cache(message_filters.SimpleFilter(), 5)
 
     cache.add(SimpleNamespace(header=SimpleNamespace(stamp=Time(seconds=3))))
@@ -144,7 +144,7 @@ def test_a_stamp_may_be_a_time_of_rclpy() -> None:
     ],
 )
 def test_inputs_in_two_threads_lose_no_pair(make: Callable[..., Any]) -> None:
-    """The callbacks of a multi-threaded executor."""
+    """As in the callbacks of a multi-threaded executor."""
     inputs = [message_filters.SimpleFilter(), message_filters.SimpleFilter()]
     found = collected(make(inputs, 500))
     start = Barrier(2)

@@ -1,4 +1,4 @@
-"""The errors about a package of ROS that is missing."""
+"""The errors about a missing package of ROS."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[2]
     ],
 )
 def test_a_known_package_has_its_own_way(module: str, part: str) -> None:
-    """Messages need definitions, Python its source, and the rest something in its place."""
+    """Messages need definitions, Python packages their source, and the rest a replacement."""
     text = advice(module)
 
     assert text is not None
@@ -47,7 +47,7 @@ def test_a_known_package_has_its_own_way(module: str, part: str) -> None:
 def test_what_an_extra_brings_is_said_with_its_name(
     module: str, extra: str, distribution: str
 ) -> None:
-    """One command, whose extra is there and brings the module."""
+    """One command, whose extra exists and installs the module."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
     assert f"pip install 'aionode[{extra}]'" in (advice(module) or "")
@@ -55,13 +55,13 @@ def test_what_an_extra_brings_is_said_with_its_name(
 
 
 def test_nothing_is_said_about_other_modules() -> None:
-    """They are not ROS's, and pip's own words fit better."""
+    """They are not ROS's, and pip's own error is better."""
     assert advice("flask") is None
     assert advice("helper") is None
 
 
 def test_a_module_of_a_package_that_aionode_has_is_told_apart() -> None:
-    """To get the package from elsewhere would not help."""
+    """Getting the package from elsewhere would not help."""
     text = advice("rclpy.nothing", frozenset({"rclpy"}))
 
     assert text is not None
@@ -76,7 +76,7 @@ def failed(module: str) -> ModuleNotFoundError:
 
 
 def test_missing_modules_are_found_where_a_traceback_shows_them() -> None:
-    """In causes, in what was being handled, and in groups; each once."""
+    """In causes, in exceptions being handled, and in groups; each once."""
     cause, handled, part = map(failed, ("no_cause_msgs", "no_context_msgs", "no_part_msgs"))
     above = RuntimeError("above")
     above.__cause__ = cause

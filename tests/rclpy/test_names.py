@@ -1,4 +1,4 @@
-"""Every public name that a module or class of rclpy 9.1.2 has is here, but those listed.
+"""Every public name in a module or class of rclpy 9.1.2 exists here, except those listed.
 
 ``names.json`` has the names; `list_names.py` prints them, and ``imports.txt`` has those that its
 modules import only for themselves. With the path of an interpreter that has
@@ -106,7 +106,7 @@ LACKS = {
     "rclpy.qos.QoSLivelinessPolicy.RMW_QOS_POLICY_DURABILITY_UNKNOWN": "the same class",
     "rclpy.qos_overriding_options.QoSOverridingOptions.policy_kinds": "options have it, no class",
 }
-"""The names that are not here, and why."""
+"""The names that do not exist here, with the reason."""
 
 SHARED = {
     "aionode.clock": "one class for both APIs",
@@ -119,7 +119,7 @@ SHARED = {
     "aionode.qos": "one class for both APIs",
     "typing": "a name for annotations",
 }
-"""The modules whose classes keep their `__module__`, and why."""
+"""The modules whose classes keep their `__module__`, with the reason."""
 
 SEEN = {
     "ament_index_python.packages": "get_resource os pathlib",
@@ -146,14 +146,14 @@ where they were seen."""
 
 
 def imported(module: str) -> Any:
-    """Return a module, whatever it warns of."""
+    """Return an imported module, ignoring its warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return importlib.import_module(module)
 
 
 def lacking(owner: Any, path: str, names: list[str]) -> Iterator[str]:
-    """Yield the names that a module or class does not have."""
+    """Yield the names that a module or class lacks."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield from (f"{path}.{name}" for name in names if not hasattr(owner, name))
@@ -161,7 +161,7 @@ def lacking(owner: Any, path: str, names: list[str]) -> Iterator[str]:
 
 @pytest.mark.usefixtures("installed")
 def test_modules_have_the_names_of_rclpy() -> None:
-    """Programs take some names from where rclpy imports them, not from where it defines them."""
+    """Programs use some names where rclpy imports them, not where it defines them."""
     found = {
         name
         for module, names in EXPECTED["modules"].items()
@@ -199,7 +199,7 @@ def test_classes_say_the_module_of_rclpy() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_a_name_is_lacking_as_long_as_it_is_listed() -> None:
-    """An exception that nothing needs is taken off the list."""
+    """An exception that is no longer needed is taken off the list."""
     known = {
         f"{path}.{name}"
         for kind in EXPECTED.values()
@@ -217,7 +217,7 @@ def test_a_name_is_lacking_as_long_as_it_is_listed() -> None:
 
 @pytest.mark.usefixtures("installed")
 def test_a_name_from_elsewhere_is_the_same_object() -> None:
-    """A parameter described by one of two classes of one name would be refused."""
+    """A parameter described by the other of two equally named classes would be refused."""
     node, client = imported("rclpy.node"), imported("rclpy.client")
 
     assert node.ParameterDescriptor is message_class("rcl_interfaces/msg/ParameterDescriptor")
@@ -285,7 +285,7 @@ def test_the_former_module_of_events_warns_as_in_rclpy() -> None:
     reason=f"{INTERPRETER} is not set: no interpreter that has rclpy to compare with",
 )
 def test_the_names_are_those_of_rclpy() -> None:
-    """What aionode is compared with is what rclpy has, not what was once written down."""
+    """The comparison is with what rclpy has, not with what was once written down."""
     done = subprocess.run(
         [os.environ[INTERPRETER], str(HERE / "list_names.py")],
         capture_output=True,
@@ -313,7 +313,7 @@ def test_a_module_of_rclpy_is_an_attribute_whatever_was_imported_first(first: st
 @pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize("module", SEEN)
 def test_names_are_found_where_programs_take_them_from(module: str) -> None:
-    """Completion in an editor writes the module that an example happened to import."""
+    """Editor completion inserts the module that an example happened to import."""
     found = imported(module)
 
     assert [name for name in SEEN[module].split() if not hasattr(found, name)] == []

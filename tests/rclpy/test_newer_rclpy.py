@@ -1,4 +1,4 @@
-"""What newer versions of rclpy have than that of PyPI, and what programs do with its parts."""
+"""Additions of newer rclpy versions than PyPI's, and what programs do with its parts."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ PATIENCE_S = 20.0
 
 @pytest.fixture
 def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
-    """A context out of earshot."""
+    """An isolated context."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     context = rclpy.Context()
@@ -91,7 +91,7 @@ def test_a_goal_takes_its_result_where_it_ends(
 def test_a_goal_may_be_executed_without_a_callback(
     node: Node, wait: Callable[[Future[Any]], Any]
 ) -> None:
-    """A state machine of its own ends it some time."""
+    """Its own state machine ends it later."""
     goals: list[Any] = []
     ActionServer(node, Fibonacci, "count", lambda _: None, handle_accepted_callback=goals.append)
     client: Any = ActionClient(node, Fibonacci, "count")
@@ -106,7 +106,7 @@ def test_a_goal_may_be_executed_without_a_callback(
 def test_a_result_of_another_class_is_refused(
     node: Node, wait: Callable[[Future[Any]], Any]
 ) -> None:
-    """The goal goes on: its callback can still end it."""
+    """The goal continues: its callback can still end it."""
     problems: list[str] = []
 
     def execute(goal: Any) -> Any:
@@ -131,7 +131,7 @@ def test_a_request_may_be_answered_later_from_anywhere(
     place: str,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Bridges to asyncio put their own function in the place of `send_response`."""
+    """Bridges to asyncio replace `send_response` by their own function."""
     kept: list[tuple[Any, Any]] = []
     service: Any = node.create_service(AddTwoInts, "add", lambda request, response: response)
     send = service.send_response
@@ -176,7 +176,7 @@ def test_a_request_may_be_answered_later_from_anywhere(
 def test_an_executor_says_whether_it_spins(
     context: rclpy.Context, node: Node, spin: Callable[[Any, Future[bool]], None]
 ) -> None:
-    """Programs decide by it whether they may wait for a callback."""
+    """Programs use this to decide whether they may wait for a callback."""
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     seen: Future[bool] = Future()
@@ -197,7 +197,7 @@ def test_an_executor_says_whether_it_spins(
 def test_the_end_of_the_program_ends_the_spin_of_several_threads(
     context: rclpy.Context, node: Node
 ) -> None:
-    """As it ends that of one."""
+    """As it ends that of a single thread."""
 
     def leave() -> None:
         raise SystemExit(7)
@@ -217,7 +217,7 @@ def test_the_end_of_the_program_is_no_exception_that_nobody_has_retrieved(
     executor_class: type[SingleThreadedExecutor | MultiThreadedExecutor],
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    """`spin` raises it; rclpy prints no line more."""
+    """`spin` raises it; rclpy prints nothing more."""
 
     async def leave() -> None:
         raise SystemExit(7)
@@ -234,7 +234,7 @@ def test_the_end_of_the_program_is_no_exception_that_nobody_has_retrieved(
 
 
 def test_a_busy_pool_takes_nothing_that_it_cannot_call(context: rclpy.Context, node: Node) -> None:
-    """Nobody could stop what queues up; a timer that is late runs once."""
+    """Nobody could stop queued calls; a late timer runs once."""
     may_end, begun = threading.Event(), threading.Semaphore(0)
     calls: list[int] = []
 
@@ -260,7 +260,7 @@ def test_a_busy_pool_takes_nothing_that_it_cannot_call(context: rclpy.Context, n
 
 
 def test_time_becomes_a_local_time() -> None:
-    """As in Lyrical: without zone, and not for a clock that begins anywhere."""
+    """As in Lyrical: without time zone, and not for a clock with an arbitrary start."""
     moment = datetime(2026, 5, 23, 12, 30, 0, 250000)  # noqa: DTZ001  # as rclpy returns it
     time = Time(nanoseconds=round(moment.timestamp() * 1e9), clock_type=ClockType.SYSTEM_TIME)
 
@@ -288,7 +288,7 @@ def test_the_clients_and_servers_of_a_service_are_told(node: Node) -> None:
 
 
 def test_a_service_of_two_endpoints_is_shown_as_lyrical_shows_it() -> None:
-    """As middlewares on DDS tell of them."""
+    """As reported by middlewares on DDS."""
     info = ServiceEndpointInfo(
         endpoint_type=EndpointTypeEnum.CLIENT,
         endpoint_count=2,
@@ -303,7 +303,7 @@ def test_a_service_of_two_endpoints_is_shown_as_lyrical_shows_it() -> None:
 
 
 def test_parameter_events_can_be_those_of_some_nodes(node: Node) -> None:
-    """By a filter of the subscription, until it is taken away."""
+    """By a filter of the subscription, until it is removed."""
     handler = ParameterEventHandler(node)
 
     assert handler.configure_nodes_filter(["/one", "/two"])
@@ -326,7 +326,7 @@ def test_the_arguments_of_lyrical_are_taken(node: Node) -> None:
 
 
 def test_the_modules_and_bases_of_lyrical_can_be_imported(node: Node) -> None:
-    """For annotations, and for programs that ask what a node is."""
+    """For annotations, and for programs that check what a node is."""
     for kind in ("client", "clock", "node", "publisher", "service", "subscription", "timer"):
         base = getattr(importlib.import_module(f"rclpy.{kind}"), f"Base{kind.title()}")
         name = f"Async{kind.title()}"

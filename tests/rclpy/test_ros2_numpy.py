@@ -32,7 +32,7 @@ COLOURED = [("x", "f4"), ("y", "f4"), ("z", "f4"), ("r", "u1"), ("g", "u1"), ("b
 
 @pytest.mark.parametrize(("cls", "last"), [(Point, 1.0), (Vector3, 0.0)])
 def test_coordinates_are_arrays(cls: type[Any], last: float) -> None:
-    """Points move with their frame, vectors only turn with it."""
+    """Points move with their frame, vectors only rotate with it."""
     message = cls(x=1.0, y=2.0, z=3.0)
     plain = ros2_numpy.numpify(message)
     homogeneous = ros2_numpy.numpify(message, hom=True)
@@ -99,7 +99,7 @@ def test_an_image_is_the_same_after_a_message(
 def test_an_array_that_is_no_such_image_is_refused(
     encoding: str, shape: tuple[int, ...], dtype: str
 ) -> None:
-    """Nothing is converted without being asked for."""
+    """Nothing is converted unless requested."""
     with pytest.raises(TypeError):
         ros2_numpy.msgify(Image, np.zeros(shape, dtype), encoding=encoding)
 
@@ -113,13 +113,13 @@ def test_an_array_that_is_no_such_image_is_refused(
     ],
 )
 def test_a_message_with_too_little_data_is_refused(message: Any) -> None:
-    """No peer is believed; numpy does not look at the size of an empty buffer."""
+    """No peer is trusted; numpy does not check the size of an empty buffer."""
     with pytest.raises(TypeError, match="its size needs"):
         ros2_numpy.numpify(message)
 
 
 def test_unknown_cells_of_a_map_are_masked() -> None:
-    """So that means and sums leave them out."""
+    """So that means and sums ignore them."""
     cells = np.full((3, 4), -1, np.int8)
     cells[1, 1:3] = 100
 
@@ -141,7 +141,7 @@ def test_a_map_can_be_sent_after_it_was_an_array() -> None:
 
 
 def test_fields_are_the_type_of_a_point() -> None:
-    """Bytes between and after fields have names that no field has."""
+    """Padding bytes have names that no field has."""
     fields = [
         PointField(name="x", offset=0, count=1, datatype=PointField.FLOAT32),
         PointField(name="normal", offset=8, count=3, datatype=PointField.FLOAT32),
@@ -157,7 +157,7 @@ def test_fields_are_the_type_of_a_point() -> None:
 
 
 def test_a_cloud_is_the_same_after_a_message() -> None:
-    """One row of points has no dimension of rows."""
+    """A single row of points has no row dimension."""
     points = np.zeros(5, COLOURED)
     points["x"] = np.arange(5)
 
@@ -171,7 +171,7 @@ def test_a_cloud_is_the_same_after_a_message() -> None:
 
 
 def test_points_of_the_other_byte_order_keep_their_values() -> None:
-    """The fields of a cloud do not say in which order the bytes are."""
+    """The fields of a cloud do not specify the byte order."""
     points = np.array([(1.5, 2), (-3.0, 4)], [("x", ">f4"), ("id", "<u2")])
 
     message = ros2_numpy.msgify(PointCloud2, points)
@@ -191,7 +191,7 @@ def test_points_that_are_not_finite_are_left_out() -> None:
 
 
 def test_colours_are_packed_into_one_field_and_taken_out_again() -> None:
-    """As PCL has them."""
+    """As in PCL."""
     points = np.zeros(2, COLOURED)
     points["r"], points["g"], points["b"] = 1, 2, 3
 
@@ -214,7 +214,7 @@ def test_what_has_no_converter_is_refused() -> None:
 
 
 def test_the_functions_beside_those_of_tf_transformations() -> None:
-    """Its module `transformations` has these as well."""
+    """The package's module `transformations` has these as well."""
     half_turn = transformations.quaternion_from_euler(0, 0, math.pi)
 
     assert transformations.quaternion_real([1, 2, 3, 4]) == 4

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.one_loop
 
 @pytest.fixture(autouse=True)
 def alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing else on the machine is heard."""
+    """Isolated from everything else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
 
@@ -36,7 +36,7 @@ async def node(alone: None) -> AsyncIterator[Node]:
 
 
 def options_of(path: Path) -> rosbag2_py.StorageOptions:
-    """Return where a bag is."""
+    """Return the options for the place of a bag."""
     return rosbag2_py.StorageOptions(uri=str(path), storage_id="mcap")
 
 
@@ -57,7 +57,7 @@ def recorded() -> bool:
 async def test_a_recorder_records_in_its_thread_until_it_is_stopped(
     node: Node, tmp_path: Path
 ) -> None:
-    """The program goes on meanwhile, which rosbag2's first recorder did not allow."""
+    """The program continues meanwhile, which rosbag2's first recorder did not allow."""
     words = node.create_publisher(String, "words", 10)
     record = rosbag2_py.RecordOptions()
     record.topics = ["/words"]
@@ -74,7 +74,7 @@ async def test_a_recorder_records_in_its_thread_until_it_is_stopped(
 
 
 async def test_the_older_form_records_until_it_is_cancelled(node: Node, tmp_path: Path) -> None:
-    """Programs of Jazzy call it in a thread."""
+    """Programs for Jazzy call it in a thread."""
     words = node.create_publisher(String, "words", 10)
     recorder = rosbag2_py.Recorder("error")
     record = rosbag2_py.RecordOptions(all_topics=True)
@@ -143,7 +143,7 @@ def test_metadata_are_written_anew(tmp_path: Path) -> None:
 
 
 def test_bags_are_written_anew_by_a_file(tmp_path: Path) -> None:
-    """By `bag_rewrite`, as `ros2 bag convert` calls it."""
+    """By `bag_rewrite`, like `ros2 bag convert`."""
     write(tmp_path / "a", 2)
     write(tmp_path / "b", 3)
     options = tmp_path / "out.yaml"

@@ -53,7 +53,7 @@ def rest(reader: rosbag2_py.SequentialReader) -> list[tuple[str, int]]:
 
 
 def test_a_bag_is_read_as_in_the_tutorial(path: Path) -> None:
-    """Topics and types first, then one message after the other."""
+    """Topics and types first, then one message after another."""
     reader = reader_of(path)
 
     types = {topic.name: topic.type for topic in reader.get_all_topics_and_types()}
@@ -67,7 +67,7 @@ def test_a_bag_is_read_as_in_the_tutorial(path: Path) -> None:
 
 
 def test_a_filter_and_a_time_choose_what_is_read(path: Path) -> None:
-    """A filter takes effect for what was not read yet."""
+    """A filter applies to messages that were not read yet."""
     reader = reader_of(path)
 
     reader.read_next()
@@ -89,7 +89,7 @@ def test_a_bag_is_read_in_reverse(path: Path) -> None:
 
 
 def test_info_says_what_is_in_a_bag(path: Path) -> None:
-    """With times and durations of rclpy."""
+    """With rclpy's times and durations."""
     metadata = rosbag2_py.Info().read_metadata(str(path), "mcap")
 
     assert metadata.message_count == 6
@@ -103,7 +103,7 @@ def test_info_says_what_is_in_a_bag(path: Path) -> None:
 
 
 def test_types_are_defined_in_what_is_written(path: Path) -> None:
-    """Other programs read it without this one's types."""
+    """Other programs can read it without this program's types."""
     reader = reader_of(path)
 
     texts = {one.topic_type: one for one in reader.get_all_message_definitions()}

@@ -1,4 +1,4 @@
-"""Message classes as rosidl makes them: what programs do with them, and the texts of its errors."""
+"""Message classes like those of rosidl: how programs use them, and the texts of their errors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_class_has_the_names_that_rosidl_gives_it() -> None:
 
 
 def test_a_type_has_one_class() -> None:
-    """Classes made twice, or in two threads, would not be equal to themselves."""
+    """Classes created twice, or in two threads, would not be equal to themselves."""
     found: list[Any] = []
     wait = threading.Barrier(4)
 
@@ -83,7 +83,7 @@ def test_services_and_actions_have_their_parts() -> None:
 
 
 def test_a_program_can_ask_for_the_type_support() -> None:
-    """It is checked before rclpy makes an endpoint."""
+    """It is checked before rclpy creates an endpoint."""
     metaclass = type(message_class("std_msgs/msg/Int8"))
     assert metaclass._TYPE_SUPPORT is None  # type: ignore[attr-defined]
 
@@ -122,7 +122,7 @@ def test_a_message_shows_itself_as_in_ros() -> None:
 
 
 def test_constants_can_be_read_and_not_set() -> None:
-    """They belong to the metaclass, as rosidl has it, and objects have them too."""
+    """They belong to the metaclass, as in rosidl, and instances have them, too."""
     transition = message_class("lifecycle_msgs/msg/Transition")
 
     assert transition.TRANSITION_ON_ERROR_ERROR == 62
@@ -133,7 +133,7 @@ def test_constants_can_be_read_and_not_set() -> None:
 
 
 def test_defaults_are_new_for_each_message() -> None:
-    """A list that is changed in one message must not change the next one."""
+    """Changing a list in one message must not affect the next one."""
     first = message_class("test_msgs/msg/UnboundedSequences")()
     first.bool_values_default.append(True)
 
@@ -217,7 +217,7 @@ def test_names_lead_to_classes_and_back() -> None:
 
 
 def test_what_is_no_type_is_refused() -> None:
-    """The error says what was given, or what is close."""
+    """The error shows what was given, or similar names."""
     with pytest.raises(TypeError, match="<class 'int'>: not a message, service or action class"):
         ros_type_name(int)
     with pytest.raises(InterfaceNotFoundError, match="did you mean std_msgs/msg/String"):

@@ -1,4 +1,4 @@
-"""Encoding and decoding of messages as rosidl has them: the same bytes as aionode's own."""
+"""Encoding and decoding of rosidl messages: the same bytes as aionode's own."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_what_is_encoded_can_be_decoded(message: Message) -> None:
 
 
 def test_a_new_message_is_decoded_into_what_its_constructor_makes() -> None:
-    """Decoding bypasses the constructor, and must leave values of the same types."""
+    """Decoding bypasses the constructor, and must produce values of the same types."""
     for cls in various_classes().values():
         fresh: Any = type(from_aionode(cls()))()
 
@@ -58,7 +58,7 @@ def test_a_new_message_is_decoded_into_what_its_constructor_makes() -> None:
 
 
 def test_a_decoded_message_shares_no_memory_with_its_data() -> None:
-    """Programs write into what they receive, and keep it."""
+    """Programs modify what they receive, and keep it."""
     data = bytearray(encode(Sequences(float32_values=[1.0], uint8_values=b"ab")))
     msg = decode(Sequences, data)
     data[:] = bytes(len(data))
@@ -76,7 +76,7 @@ def test_the_other_byte_order_is_decoded() -> None:
 
 
 def test_unusual_values_are_encoded_as_in_ros() -> None:
-    """ROS converts them in C; a program that assigns them runs there."""
+    """ROS converts them in C; a program that assigns them works there."""
     made = Sequences(
         bool_values=(True, np.bool_(False)),
         byte_values=(b"a", b"b"),
@@ -93,7 +93,7 @@ def test_unusual_values_are_encoded_as_in_ros() -> None:
 
 
 def test_an_array_of_another_type_is_converted_or_refused() -> None:
-    """A slot may hold anything, as its check is off."""
+    """A slot may hold anything, because its check is off."""
     scan = message_class("sensor_msgs/msg/LaserScan")()
     scan._ranges = array.array("d", [1.0, 2.0])
 
@@ -127,7 +127,7 @@ def test_what_does_not_fit_is_refused_with_its_place(msg: Any, text: str) -> Non
 
 
 def test_a_nested_message_of_another_kind_is_refused() -> None:
-    """The error is the one that rclpy gives."""
+    """The error is that of rclpy."""
     with pytest.raises(AttributeError, match="'String' object has no attribute 'sec'"):
         encode(message_class("std_msgs/msg/Header")(stamp=String()))
 
@@ -139,7 +139,7 @@ def test_damaged_data_is_refused() -> None:
 
 
 def test_what_is_no_message_is_refused() -> None:
-    """The error says what would have been one."""
+    """The error says what would be valid."""
     service = service_class("std_srvs/srv/Trigger")
     with pytest.raises(TypeError, match=r"not a message class; use one of its parts"):
         decode(service, b"")

@@ -1,4 +1,4 @@
-"""The classes that aionode makes, and those of ROS itself.
+"""The classes that aionode creates, compared with those of ROS itself.
 
 They are compared where a Python with ROS's packages is known: AIONODE_REAL_RCLPY is its path, and
 ``pip install 'ros-rclpy[fastrtps]' ros-std-msgs ros-test-msgs`` makes one.
@@ -38,7 +38,7 @@ Their classes lack constants such as ``X__DEFAULT``; the value of the field is t
 
 @pytest.fixture(scope="module")
 def real() -> dict[str, Any]:
-    """What ROS's own classes are and do."""
+    """The properties and behaviour of ROS's own classes."""
     program = Path(rosidl_report.__file__)
     assert REAL is not None
     done = subprocess.run(
@@ -56,7 +56,7 @@ def real() -> dict[str, Any]:
 
 @pytest.mark.filterwarnings("ignore")
 def test_classes_are_those_of_ros(real: dict[str, Any]) -> None:
-    """Names, types, constants, texts of errors, and what becomes of any value: all the same."""
+    """Names, types, constants, error texts, and the conversion of any value: all the same."""
     names = [name for name in shipped_types() if any(key.startswith(name) for key in real)]
     own = rosidl_report.report({name: interface_class(name) for name in names})
     own = json.loads(json.dumps(own, default=str))

@@ -30,7 +30,7 @@ pytestmark = pytest.mark.usefixtures("installed")
 
 
 def test_a_message_becomes_yaml() -> None:
-    """What `ros2 topic echo` prints."""
+    """The output of `ros2 topic echo`."""
     header = Header(frame_id="map")
     header.stamp.sec = 5
 
@@ -53,7 +53,7 @@ def test_a_message_becomes_a_dictionary() -> None:
 
 
 def test_long_values_are_shortened() -> None:
-    """`ros2 topic echo` has options for it."""
+    """`ros2 topic echo` has options for this."""
     message = Sequences(int32_values=[1, 2, 3], string_values=["abcdef"])
 
     short = runtime.message_to_ordereddict(message, truncate_length=2)
@@ -82,7 +82,7 @@ def test_a_message_becomes_a_line() -> None:
 
 
 def test_fields_are_set_from_dictionaries() -> None:
-    """`ros2 topic pub` and rosbridge build messages so."""
+    """`ros2 topic pub` and rosbridge build messages this way."""
     message = Sequences()
 
     runtime.set_message_fields(
@@ -136,7 +136,7 @@ def test_types_are_found_by_name() -> None:
 
 
 def test_interfaces_are_listed() -> None:
-    """Tools offer them for completion."""
+    """Tools use them for completion."""
     assert "msg/String" in runtime.get_interfaces(["std_msgs"])["std_msgs"]
     assert "srv/Trigger" in runtime.get_service_interfaces()["std_srvs"]
     assert "std_srvs" not in runtime.get_message_interfaces()
@@ -170,7 +170,7 @@ def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_without_a_prefix_path_resources_are_those_of_the_workspace(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Launch files ask whether a package is there, and do without it otherwise."""
+    """Launch files check whether a package exists, and do without it otherwise."""
     folder = tmp_path / "src" / "my_robot"
     folder.mkdir(parents=True)
     (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
@@ -188,7 +188,7 @@ def test_without_a_prefix_path_resources_are_those_of_the_workspace(
 
 
 def test_without_a_prefix_path_a_package_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Programs go on with another folder then; ROS, whose variable is always set, says the same."""
+    """Programs then use another folder; ROS, whose variable is always set, raises the same."""
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 
     with pytest.raises(PackageNotFoundError, match="package 'my_robot' not found, searching"):

@@ -1,4 +1,4 @@
-"""Programs of rclpy run as they are: by `aionode run` and ``python -m aionode.rclpy``."""
+"""rclpy programs run unmodified: by `aionode run` and ``python -m aionode.rclpy``."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ def folder(tmp_path: Path) -> Path:
     """A folder with a program, and a module that it imports."""
     (tmp_path / "program.py").write_text(PROGRAM)
     (tmp_path / "helper.py").write_text("TEXT = 'hi'\n")
-    # Found before an rclpy of ROS that may be installed here, about which a line of the log would
-    # be printed; `aionode.rclpy` itself takes the place of both.
+    # Found before a ROS rclpy that may be installed here, about which a log line would be printed;
+    # `aionode.rclpy` itself replaces both.
     shadow = tmp_path / SHADOW / "rclpy"
     shadow.mkdir(parents=True)
     (shadow / "__init__.py").write_text("raise ImportError('not the rclpy of aionode')\n")
@@ -91,7 +91,7 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
 
 
 def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
-    """As ``python -m`` does, with the whole path in its arguments."""
+    """Like ``python -m``, with the whole path in its arguments."""
     done = run(folder, "run", "-m", "program", "exit", module="aionode")
 
     assert done.returncode == 7
@@ -125,7 +125,7 @@ def test_a_module_that_only_defines_main_does_not_end_as_if_it_had_run(folder: P
 
 
 def test_an_executable_of_an_installed_package_runs_by_its_path(folder: Path) -> None:
-    """It is a file of Python without an ending, which imports the package alone."""
+    """It is a Python file without an extension, which only imports the package."""
     (folder / "mover").write_text("#!/usr/bin/python3\nimport sys, helper\nsys.exit(helper.TEXT)\n")
 
     done = run(folder, "run", "./mover", module="aionode")
@@ -176,7 +176,7 @@ def test_a_program_that_only_defines_main_does_not_end_as_if_it_had_run(folder: 
 
 
 def test_a_module_that_is_not_there_is_named_with_what_is_close(folder: Path) -> None:
-    """And with the places where it was looked for."""
+    """And with the places that were searched."""
     done = run(folder, "-m", "progam")
 
     assert done.returncode == 2
@@ -187,7 +187,7 @@ def test_a_module_that_is_not_there_is_named_with_what_is_close(folder: Path) ->
 
 
 def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
-    """What runs the program is of no interest to its author."""
+    """The runner's frames do not interest the program's author."""
     done = run(folder, "program.py", "fail")
 
     assert done.returncode == 1
@@ -261,7 +261,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
 def test_what_cannot_run_is_reported_in_one_line(
     folder: Path, command: tuple[str, ...], problem: str
 ) -> None:
-    """As Python does, with its exit status."""
+    """Like Python, with its exit status."""
     done = run(folder, *command)
 
     assert done.returncode == 2
@@ -319,7 +319,7 @@ def test_a_folder_of_messages_beside_the_program_is_no_package(folder: Path) -> 
 
 
 def test_a_name_that_a_package_of_aionode_does_not_have_is_shown_as_usual(folder: Path) -> None:
-    """Messages by the name of another package are no reason for advice."""
+    """Equally named messages of another package are no reason for advice."""
     (folder / "own.py").write_text("from std_msgs.msg import Strin\n")
 
     assert run(folder, "own.py").stderr.splitlines()[-1].startswith("ImportError: cannot import")

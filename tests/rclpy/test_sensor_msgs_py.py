@@ -24,7 +24,7 @@ def cloud() -> Any:
 
 
 def test_a_cloud_is_made_and_read() -> None:
-    """Its message is of the kind that programs of rclpy publish."""
+    """Its message is of the kind that rclpy programs publish."""
     made = cloud()
 
     assert type(made) is message_class("sensor_msgs/msg/PointCloud2")

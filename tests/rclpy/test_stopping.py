@@ -1,4 +1,4 @@
-"""Programs of rclpy that publish a stop message at their end: it is the last one that is heard."""
+"""rclpy programs that publish a stop message at their end: it is the last message received."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ finally:
 
 
 class Wheels:
-    """What hears the commands, in a context of its own."""
+    """Receives the commands, in a separate context."""
 
     def __init__(self) -> None:
         self.context = rclpy.Context()
@@ -81,7 +81,7 @@ class Wheels:
         )
 
     def listen_until_stopped(self) -> None:
-        """Listen until a stop is heard, and whatever comes in half a second after it."""
+        """Listen until a stop arrives, and for half a second after it."""
         ends_ns = steady_ns() + PATIENCE_S * 1e9
         while 0 not in self.heard and steady_ns() < ends_ns:
             self.executor.spin_once(timeout_sec=0.1)
@@ -89,14 +89,14 @@ class Wheels:
             self.executor.spin_once(timeout_sec=0.1)
 
     def listen_until_moved(self) -> None:
-        """Listen until a command is heard."""
+        """Listen until a command arrives."""
         while not self.heard:
             self.executor.spin_once(timeout_sec=1.0)
 
 
 @pytest.fixture
 def wheels(monkeypatch: pytest.MonkeyPatch) -> Iterator[Wheels]:
-    """Wheels that hear the programs of this test only."""
+    """Wheels that only receive from the programs of this test."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     wheels = Wheels()
@@ -109,7 +109,7 @@ def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[str]:
     program = tmp_path / "mover.py"
     program.write_text(PROGRAM, encoding="utf-8")
     return fork_server.start(
-        ["-m", "aionode.rclpy", str(program), *arguments],  # as `aionode run` does
+        ["-m", "aionode.rclpy", str(program), *arguments],  # like `aionode run`
         env=os.environ,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
@@ -132,7 +132,7 @@ def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[str]:
 def test_the_stop_of_a_program_that_a_signal_ends_gets_out(
     wheels: Wheels, tmp_path: Path, way: str, number: signal.Signals
 ) -> None:
-    """The signal has shut the context down before; and no thread moves on after the stop."""
+    """The signal has already shut the context down; and no thread moves on after the stop."""
     with start(tmp_path, way, "shutdown") as mover:
         wheels.listen_until_moved()
         mover.send_signal(number)
@@ -155,7 +155,7 @@ def test_the_stop_of_a_program_that_a_signal_ends_gets_out(
 def test_a_signal_that_is_forwarded_does_not_end_the_cleanup(
     wheels: Wheels, tmp_path: Path, first: signal.Signals, second: signal.Signals, delay_s: float
 ) -> None:
-    """The process group has got it already: ``timeout``, ``ros2 launch`` and wrappers do that."""
+    """The process group has received it: ``timeout``, ``ros2 launch`` and wrappers do that."""
     with start(tmp_path, "spin", "leave") as mover:
         wheels.listen_until_moved()
         mover.send_signal(first)
@@ -167,7 +167,7 @@ def test_a_signal_that_is_forwarded_does_not_end_the_cleanup(
 
 
 def test_a_hangup_that_is_ignored_stays_ignored(wheels: Wheels, tmp_path: Path) -> None:
-    """``nohup`` starts programs so, and they are to go on when the terminal is lost."""
+    """``nohup`` starts programs this way, which should continue when the terminal is lost."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         mover = start(tmp_path, "spin", "leave")

@@ -1,4 +1,4 @@
-"""Which handles an executor looks at."""
+"""The handles that an executor checks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rclpy._taking import find_ready
 
 
 class Handles:
-    """A node with one subscription, whose readiness is that of a function."""
+    """A node with one subscription, whose readiness is given by a function."""
 
     def __init__(self, ready: Callable[[], bool]) -> None:
         self.messages = Arrivals(Signal())
@@ -38,7 +38,7 @@ class Handles:
 
 
 def test_subscriptions_are_looked_at_only_after_something_has_come() -> None:
-    """A look at each handle is what a round costs most."""
+    """Checking each handle is the most expensive part of a round."""
     handles = Handles(lambda: False)
 
     handles.found()
@@ -61,7 +61,7 @@ def test_a_subscription_is_looked_at_as_long_as_something_waits() -> None:
 
 
 def test_what_comes_during_a_look_is_found_by_the_next_one() -> None:
-    """Another thread may fill a handle right after it was looked at."""
+    """Another thread may fill a handle right after it was checked."""
 
     def too_late() -> bool:
         if handles.looks == 1:

@@ -1,6 +1,6 @@
-"""Programs of rclpy in terminals, unchanged: what they print, and how they end.
+"""rclpy programs in terminals, unchanged: what they print, and how they end.
 
-The programs of the tutorial are not part of the repository; they are run where they lie beside it.
+The programs of the tutorial are not part of the repository; they are run if they are beside it.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ rclpy.spin(node)
 
 
 class Terminal:
-    """A program that runs, and what it has printed so far."""
+    """A running program, and its output so far."""
 
     def __init__(self, output: Path, *command: str, environment: dict[str, str]) -> None:
         self._output = output
@@ -100,7 +100,7 @@ class Terminal:
 
     @property
     def printed(self) -> str:
-        """What was printed, without time stamps."""
+        """The output without time stamps."""
         return STAMP.sub("", self._output.read_text(encoding="utf-8"))
 
     def wait_for(self, text: str) -> None:
@@ -124,7 +124,7 @@ Start = Callable[..., Terminal]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Start programs that hear each other; `rclpy=False` runs one without aionode's rclpy."""
+    """Start programs that are connected; `rclpy=False` runs one without aionode's rclpy."""
     environment = isolated_environment()
     terminals: list[Terminal] = []
 
@@ -133,7 +133,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
             path = tmp_path / f"program{len(terminals)}.py"
             path.write_text(program, encoding="utf-8")
             program = path
-        runner = ("-m", "aionode.rclpy") if rclpy else ()  # as `aionode run` does
+        runner = ("-m", "aionode.rclpy") if rclpy else ()  # like `aionode run`
         output = tmp_path / f"output{len(terminals)}"
         terminal = Terminal(output, *runner, str(program), *args, environment=environment)
         terminals.append(terminal)
@@ -159,7 +159,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 def test_a_client_that_waits_for_a_server_ends_by_a_signal(
     start: Start, number: signal.Signals, status: int, last_line: str
 ) -> None:
-    """Its loop asks again and again: a plain "no" after the shutdown would keep it for ever."""
+    """Its loop asks repeatedly: a plain "no" after the shutdown would keep it there forever."""
     client = start(WAITING_CLIENT)
     client.wait_for("Waiting")
 
@@ -168,7 +168,7 @@ def test_a_client_that_waits_for_a_server_ends_by_a_signal(
 
 
 def test_a_client_that_is_first_gets_its_answer(start: Start) -> None:
-    """Programs of a system start in any order; SIGTERM ends a server as it does in ROS 2."""
+    """Programs of a system start in any order; SIGTERM ends a server as in ROS 2."""
     client = start(WAITING_CLIENT)
     client.wait_for("Waiting")
     server = start(SERVER)
@@ -185,7 +185,7 @@ def test_a_client_that_is_first_gets_its_answer(start: Start) -> None:
 def test_the_publisher_and_the_subscriber_of_the_tutorial(
     start: Start, example: str | None
 ) -> None:
-    """Both as they stand, and each with aionode's example in the place of the other."""
+    """Both unchanged, and each with aionode's example in place of the other."""
 
     def program(name: str) -> Terminal:
         own = name == example

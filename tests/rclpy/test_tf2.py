@@ -126,7 +126,7 @@ def test_the_core_gives_messages_times_and_errors_of_rclpys_kind() -> None:
 
 
 def test_a_wait_with_a_limit_ends_as_soon_as_the_transform_is_there() -> None:
-    """tf2_ros looks every 20 ms; a limit that passes is no error by itself."""
+    """tf2_ros polls every 20 ms; a limit that passes is no error by itself."""
     buffer = Buffer()
     assert not buffer.can_transform("a", "b", Time(), timeout=Duration(nanoseconds=1))
     timer = threading.Timer(0.01, lambda: buffer.set_transform(stamped("a", "b"), "me"))
@@ -142,7 +142,7 @@ def test_a_wait_with_a_limit_ends_as_soon_as_the_transform_is_there() -> None:
 
 
 def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> None:
-    """In tf2_ros, each transform asks every future again, also those nobody waits for."""
+    """In tf2_ros, each transform asks every future again, even those that nobody waits for."""
     waiters = living(Waiter)
     buffer = Buffer()
     future = buffer.wait_for_transform_async("a", "b", Time(seconds=1))
@@ -160,7 +160,7 @@ def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> 
 
 
 def test_what_is_there_is_awaited_without_a_turn() -> None:
-    """For one time and for two, and with a cache time of the program's own."""
+    """For one time and for two, and with the program's own cache time."""
     buffer = Buffer(cache_time=Duration(seconds=10.0))
     buffer.set_transform(stamped("a", "b"), "me")
     time = Time(seconds=1)
@@ -174,7 +174,7 @@ def test_what_is_there_is_awaited_without_a_turn() -> None:
 
 
 def test_a_wait_for_two_times_is_resumed_when_the_transform_is_there() -> None:
-    """By the one who has sent the coroutine, as an executor does."""
+    """By the one who has sent the coroutine, like an executor."""
     buffer = Buffer()
     time = Time(seconds=1)
     coroutine = buffer.lookup_transform_full_async("a", time, "b", time, "a")
@@ -203,7 +203,7 @@ def test_registered_types_are_transformed_and_converted() -> None:
 
 
 def test_points_are_moved_in_bulk() -> None:
-    """By a Transform alone."""
+    """By just a Transform."""
     transform = stamped("a", "b").transform
     points = _tf2_sensor_msgs.transform_points(np.array([[1.0, 2.0, 3.0]]), transform)
     assert points.tolist() == [[2.0, 2.0, 3.0]]

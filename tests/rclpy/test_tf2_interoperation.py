@@ -34,7 +34,7 @@ pytestmark = pytest.mark.one_loop
 
 
 async def test_a_node_has_the_transforms_of_a_program(native: Node, side: Side) -> None:
-    """The static ones although it comes late; the program is named as their sender."""
+    """Including static ones, although it starts late; the program is named as their sender."""
     program = side.add(RclpyNode("program", context=side.context))
     ProgramsStaticBroadcaster(program).sendTransform(from_aionode(transform("base", "camera")))
     moving = ProgramsBroadcaster(program)
@@ -53,7 +53,7 @@ async def test_a_node_has_the_transforms_of_a_program(native: Node, side: Side) 
 
 
 async def test_a_program_has_the_transforms_of_a_node(native: Node, side: Side) -> None:
-    """By its listener, in a thread that waits, and by the server of the node."""
+    """By its listener, in a waiting thread, and by the server of the node."""
     StaticTransformBroadcaster(native).sendTransform(transform("base", "camera"))
     moving = TransformBroadcaster(native)
     buffer = Buffer(native)

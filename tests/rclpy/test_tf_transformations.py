@@ -1,4 +1,4 @@
-"""`tf_transformations`, as programs use it; the numbers are those that the package gives."""
+"""`tf_transformations`, as programs use it; the numbers are those of the original package."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OTHER = np.array([-0.4, 0.8, 0.2])
 
 
 def same(first: Any, second: Any) -> bool:
-    """Return whether numbers are the same but for rounding."""
+    """Return whether numbers are the same apart from rounding."""
     return np.allclose(first, second)
 
 
@@ -57,7 +57,7 @@ def test_euler_angles_are_quaternions_and_back(axes: Any, quaternion: Any, angle
 
 @pytest.mark.parametrize("middle", [-1.1, 0.0, math.pi / 2, -math.pi / 2, math.pi])
 def test_euler_angles_of_every_sequence_make_their_matrix(middle: float) -> None:
-    """Also where the first and last axis are the same line."""
+    """Also where the first and last axis coincide."""
     for axes in AXES:
         matrix = tf.euler_matrix(0.4, middle, 2.3, axes)
 
@@ -65,7 +65,7 @@ def test_euler_angles_of_every_sequence_make_their_matrix(middle: float) -> None
 
 
 def test_an_unknown_sequence_of_axes_is_refused() -> None:
-    """As the package does."""
+    """As in the package."""
     with pytest.raises(KeyError):
         tf.euler_matrix(0, 0, 0, "sxxy")
 
@@ -94,7 +94,7 @@ def test_quaternions_multiply_as_turns() -> None:
 
 
 def test_a_matrix_is_a_quaternion_whatever_its_scale() -> None:
-    """Every turn has two quaternions; the one with the positive w is given."""
+    """Every rotation has two quaternions; the one with positive w is returned."""
     for quaternion in (tf.random_quaternion() for _ in range(50)):
         positive = quaternion if quaternion[3] > 0 else -quaternion
         matrix = tf.quaternion_matrix(quaternion) @ tf.scale_matrix(3.0)
@@ -111,13 +111,13 @@ def test_a_half_turn_is_a_quaternion(axis: Any) -> None:
 
 
 def test_a_quaternion_need_not_be_of_length_one() -> None:
-    """Messages hold rounded numbers; zero is no turn."""
+    """Messages contain rounded numbers; zero is treated as no rotation."""
     assert same(tf.quaternion_matrix([0, 0, 0, 5]), np.identity(4))
     assert same(tf.quaternion_matrix([0, 0, 0, 0]), np.identity(4))
 
 
 def test_the_way_between_two_turns() -> None:
-    """The shorter one, unless the other is asked for, and with half turns added."""
+    """The shorter one, unless the other is requested, and with half turns added."""
     start, end = (0, 0, 0, 1), (0.5, -0.5, 0.5, -0.5)
 
     assert same(
@@ -134,7 +134,7 @@ def test_the_way_between_two_turns() -> None:
 
 
 def test_chance_is_that_of_numpy() -> None:
-    """A program that seeds it has the same turns in every run."""
+    """A program that seeds it gets the same rotations in every run."""
     np.random.seed(7)  # noqa: NPY002  # what programs call
     first = tf.random_quaternion()
     np.random.seed(7)  # noqa: NPY002
@@ -194,7 +194,7 @@ def test_chance_is_that_of_numpy() -> None:
     ],
 )
 def test_a_matrix_tells_what_it_is_made_of(matrix: Any, again: Any) -> None:
-    """What it is made of makes the same matrix again."""
+    """The parts give the same matrix again."""
     assert tf.is_same_transform(matrix, again(matrix))
 
 
@@ -258,7 +258,7 @@ def test_a_matrix_is_taken_apart_as_the_package_does() -> None:
     ],
 )
 def test_a_matrix_of_another_kind_is_refused(function: Any, matrix: Any) -> None:
-    """Numbers of any kind would be worse."""
+    """Returning arbitrary numbers would be worse."""
     with pytest.raises(ValueError, match="the matrix"):
         function(matrix)
 
@@ -276,7 +276,7 @@ def test_a_box_is_taken_to_the_corners_of_the_screen() -> None:
 
 @pytest.mark.parametrize("usesvd", [True, False])
 def test_points_are_taken_to_where_they_were_moved(usesvd: bool) -> None:
-    """By a turn, a scale and a translation, or by a turn where two are mirrored."""
+    """By a rotation, a scale and a translation, or by a rotation if two are mirrored."""
     rng = np.random.default_rng(0)
     start = np.vstack([rng.normal(size=(3, 20)), np.ones(20)])
     moved = tf.concatenate_matrices(
@@ -300,7 +300,7 @@ def test_the_cell_of_a_crystal_is_made_orthogonal() -> None:
 
 
 def test_lengths_are_of_vectors_along_an_axis() -> None:
-    """A result can be put into an array that is there."""
+    """A result can be written into an existing array."""
     vectors = np.random.default_rng(0).normal(size=(5, 4, 3))
     lengths = np.empty((5, 3))
     units = vectors.copy()
@@ -346,7 +346,7 @@ def test_a_ball_turns_with_the_mouse() -> None:
 
 
 def test_a_point_beside_the_ball_is_on_its_edge() -> None:
-    """The mouse leaves it while it drags."""
+    """The mouse leaves the ball while dragging."""
     assert same(tf.arcball_map_to_sphere([30, 10], [10, 10], 5), [1, 0, 0])
     assert same(tf.arcball_constrain_to_axis([0, 0, 1], [0, 0, 1]), [1, 0, 0])
     assert same(tf.arcball_constrain_to_axis([1, 0, 0], [1, 0, 0]), [0, 1, 0])

@@ -1,4 +1,4 @@
-"""A goal whose awaiting task is cancelled is cancelled itself, however that happens."""
+"""If the task that awaits a goal is cancelled, the goal is cancelled, however that happens."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Ends(NamedTuple):
 async def ends(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> AsyncIterator[Ends]:
-    """Two nodes: in one context, or in two that are connected as two processes would be."""
+    """Two nodes: in one context, or in two that are connected like two processes."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     async with (
@@ -71,7 +71,7 @@ def beside(work: Any) -> asyncio.Task[Any]:
 
 
 async def expect_canceled(goal: Goal) -> None:
-    """Wait for the end of the goal, and see that a request has ended it."""
+    """Wait for the end of the goal, and check that a request has ended it."""
     assert await end_of(goal) is GoalStatus.CANCELED
 
 
@@ -106,13 +106,13 @@ Wait = Callable[[Client], Coroutine[Any, Any, None]]
 
 
 async def when_begun(ends: Ends, call: Callable[[], object]) -> None:
-    """Call `call` as soon as the goal runs: how long it takes to begin depends on the machine."""
+    """Call `call` as soon as the goal is running: how long that takes depends on the machine."""
     await ends.worker.has_begun.wait()
     call()
 
 
 async def after_timeout(wait: Wait, ends: Ends) -> None:
-    """With the limit of asyncio."""
+    """With asyncio's timeout."""
     now_s = asyncio.get_running_loop().time()
     with suppress(TimeoutError):
         async with asyncio.timeout(None) as limit:
@@ -122,7 +122,7 @@ async def after_timeout(wait: Wait, ends: Ends) -> None:
 
 
 async def after_move_on(wait: Wait, ends: Ends) -> None:
-    """With that of anyio, which cancels again and again until its block is left."""
+    """With anyio's, which cancels repeatedly until its block is left."""
     now_s = anyio.current_time()
     with anyio.CancelScope() as scope:
         ending = beside(when_begun(ends, lambda: setattr(scope, "deadline", now_s)))
@@ -131,7 +131,7 @@ async def after_move_on(wait: Wait, ends: Ends) -> None:
 
 
 async def by_a_task_group(wait: Wait, ends: Ends) -> None:
-    """As the frameworks do that are built on anyio, such as those for tools of language models."""
+    """Like frameworks built on anyio, such as those for tools of language models."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(wait, ends.client)
         await ends.worker.has_begun.wait()
@@ -203,7 +203,7 @@ async def leave(body: AsyncIterator[str], begun: asyncio.Event) -> None:
 
 
 async def test_a_browser_that_leaves_a_stream_of_feedback_ends_the_goal(ends: Ends) -> None:
-    """Starlette cancels the stream, while it waits for feedback."""
+    """Starlette cancels the stream while it waits for feedback."""
     begun = asyncio.Event()
 
     async def stream() -> AsyncIterator[str]:
@@ -221,7 +221,7 @@ async def test_a_browser_that_leaves_a_stream_of_feedback_ends_the_goal(ends: En
 async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends: Ends) -> None:
     """Then no task awaits the goal: the stream is closed where it yields.
 
-    By Python's garbage collector, since Starlette leaves a cancelled stream to that.
+    Python's garbage collector closes it, since Starlette leaves a cancelled stream to that.
     """
 
     async def stream() -> AsyncIterator[str]:
@@ -248,7 +248,7 @@ async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
 
 
 async def test_a_request_goes_on_when_the_awaiter_of_its_answer_is_cancelled(ends: Ends) -> None:
-    """In ``finally``, under a limit that has run out, nothing can be awaited."""
+    """In ``finally``, under a limit that has passed, nothing can be awaited."""
     sent = await ends.client.send_goal(Fibonacci.Goal())
     goal = await ends.worker.begun.get()
 
@@ -302,7 +302,7 @@ async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_execu
 async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_executed(
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Behind another goal that the server is still deciding on."""
+    """It is queued behind another goal that the server is still deciding on."""
     requests = living(CancelRequest)
     noted = returns_of(monkeypatch, EarlyCancels, "note")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
@@ -328,7 +328,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
 async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_cancelled(
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One that is not of aionode says that it does not know the goal, and accepts it later."""
+    """A server other than aionode's says that it does not know the goal, and accepts it later."""
     monkeypatch.setattr(EarlyCancels, "note", lambda *_: None)
     accepted = returns_of(monkeypatch, ends.server, "_accept")
     door = Doorkeeper()
@@ -355,7 +355,7 @@ async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None
     assert living(Exchange) <= exchanges + 1  # the traceback of the last call may have its own
 
 
-# What gets lost
+# Lost requests
 
 
 @pytest.fixture
@@ -396,7 +396,7 @@ async def test_a_lost_request_is_sent_again(faults: tuple[FaultyTransport, Ends]
 async def test_a_node_does_not_end_before_a_lost_request_was_sent_again(
     faults: tuple[FaultyTransport, Ends],
 ) -> None:
-    """What is cancelled last is cancelled, too."""
+    """Goals cancelled last are cancelled, too."""
     transport, ends = faults
 
     async def program() -> None:
@@ -440,7 +440,7 @@ async def test_a_server_that_has_gone_does_not_hold_up_the_end_of_a_node(ends: E
 async def test_a_goal_that_goes_on_after_it_was_given_up_is_said(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The request is sent when nobody waits for its answer any more: the log has it, once."""
+    """The request is sent when nobody waits for its answer any more: it is logged once."""
     ends.server.register_cancel_callback(None)  # as in rclpy by default
     with suppress(TimeoutError):
         async with asyncio.timeout(None) as limit:
@@ -456,7 +456,7 @@ async def test_a_goal_that_goes_on_after_it_was_given_up_is_said(
 
 
 async def test_an_answer_without_the_goal_is_a_rejection(context: Context) -> None:
-    """A server of rclpy rejects in this way, with the code for a success."""
+    """A server of rclpy rejects this way, with the code for success."""
     impl = Fibonacci.Impl
     async with quiet_node("serving", context) as node, quiet_node("asking", context) as asking:
         node.create_service(

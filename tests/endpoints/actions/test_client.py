@@ -1,4 +1,4 @@
-"""Action clients and the goals they send: one suite, by object and through Zenoh."""
+"""Action clients and the goals they send: one suite, by object and over Zenoh."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Sent = ClientGoalHandle[Fibonacci.Result, Fibonacci.Feedback]
 
 
 class Ends(NamedTuple):
-    """A server and a client that are matched, and what executes the goals."""
+    """A server and a client that are matched, and the executor of the goals."""
 
     serving: Node
     asking: Node
@@ -61,7 +61,7 @@ class Ends(NamedTuple):
 async def ends(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> AsyncIterator[Ends]:
-    """Two nodes: in one context, or in two that only Zenoh connects, as two processes would be."""
+    """Two nodes: in one context, or in two that only Zenoh connects, like two processes."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     async with (
@@ -86,13 +86,13 @@ async def ends(
 
 
 async def begin(ends: Ends, order: int = 5) -> tuple[Sent, Goal]:
-    """Send a goal, and return both of its handles once it is executed."""
+    """Send a goal, and return both of its handles once it is executing."""
     sent = await ends.client.send_goal(Fibonacci.Goal(order=order))
     return sent, await ends.worker.begun.get()
 
 
 async def cancelled(waiting: asyncio.Task[Any]) -> None:
-    """Cancel a task that waits, and see that it ends as cancelled."""
+    """Cancel a waiting task, and check that it ends as cancelled."""
     waiting.cancel()
     with pytest.raises(asyncio.CancelledError):
         await waiting
@@ -109,7 +109,7 @@ async def gone(ends: Ends) -> None:
         await ends.asking.graph.changed()
 
 
-# The good way
+# Success
 
 
 async def test_a_goal_succeeds(ends: Ends) -> None:
@@ -128,7 +128,7 @@ async def test_a_goal_succeeds(ends: Ends) -> None:
 
 
 async def test_call_is_the_whole_in_one(ends: Ends) -> None:
-    """For callers that need only the result."""
+    """For callers that only need the result."""
     ends.worker.may_end.set()
 
     result = await ends.client.call(Fibonacci.Goal(order=2))
@@ -171,7 +171,7 @@ async def test_a_hundred_goals_at_once_get_their_own_feedback_and_results(ends: 
     async def execute(goal: Goal) -> Fibonacci.Result:
         for _ in range(3):
             goal.publish_feedback(Fibonacci.Feedback(sequence=[goal.request.order]))
-            await checkpoint()  # lets the others in between
+            await checkpoint()  # lets the others run in between
         goal.succeed()
         return Fibonacci.Result(sequence=[goal.request.order])
 
@@ -204,7 +204,7 @@ async def test_feedback_is_iterated_over_until_the_goal_ends(ends: Ends) -> None
 
 
 async def test_feedback_from_before_the_iteration_is_kept(ends: Ends) -> None:
-    """Also that which was faster than the answer to the goal, and that read after the end."""
+    """Including feedback faster than the answer to the goal, and feedback read after the end."""
 
     async def execute(goal: Goal) -> Fibonacci.Result:
         for number in range(5):
@@ -221,9 +221,9 @@ async def test_feedback_from_before_the_iteration_is_kept(ends: Ends) -> None:
 
 @pytest.mark.parametrize("ends", ["local"], indirect=True)
 async def test_the_newest_hundred_are_kept(ends: Ends) -> None:
-    """A client that never reads must not fill the memory.
+    """A client that never reads must not exhaust the memory.
 
-    In one process only: Zenoh may drop some of a burst before they come to the client.
+    In one process only: Zenoh may drop some of a burst before it reaches the client.
     """
     sent, goal = await begin(ends)
     for number in range(150):
@@ -302,7 +302,7 @@ async def test_a_rejected_goal_raises(ends: Ends) -> None:
 async def test_a_rejected_goal_carries_its_reason(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The caller can mend the goal, and people find the reason in the log of the server as well."""
+    """The caller can react, and people also find the reason in the server's log."""
 
     def judge(_goal: Fibonacci.Goal) -> GoalResponse:
         raise GoalRejected("too far: 12 m of at most 5")
@@ -322,7 +322,7 @@ async def test_a_rejected_goal_carries_its_reason(
 
 
 async def test_a_goal_callback_that_awaits_rejects_with_a_reason_too(ends: Ends) -> None:
-    """And neither its error count nor the node takes that for a failure."""
+    """Neither its error count nor the node takes that for a failure."""
 
     async def judge(_goal: Fibonacci.Goal) -> GoalResponse:
         await settle()
@@ -345,7 +345,7 @@ def test_the_reason_of_a_rejection_is_bounded_text() -> None:
 async def test_a_server_logs_rejected_goals_once_a_second(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The log is where the people of the client look next, and clients do not fill it."""
+    """People look into the log next, and clients must not fill it."""
     ends.server.register_goal_callback(lambda _goal: GoalResponse.REJECT)
 
     with caplog.at_level(logging.INFO):
@@ -383,7 +383,7 @@ async def test_an_id_of_the_caller_is_used_and_rejected_the_second_time(ends: En
 
 
 async def test_an_aborted_goal_tells_why(ends: Ends) -> None:
-    """The server's exception reaches the one who can act; result() does not raise."""
+    """The server's exception reaches the caller, who can act; result() does not raise."""
 
     async def execute(_goal: Goal) -> Fibonacci.Result:
         raise LookupError("no way to the kitchen")
@@ -404,7 +404,7 @@ async def test_an_aborted_goal_tells_why(ends: Ends) -> None:
 
 
 async def test_abort_takes_a_result_and_a_reason(ends: Ends) -> None:
-    """A server that gives up in good order can say how far it got, and why."""
+    """A server that gives up properly can report its progress, and the reason."""
 
     async def execute(goal: Goal) -> None:
         goal.abort(Fibonacci.Result(sequence=[1]), error_text="battery low")
@@ -431,7 +431,7 @@ async def test_an_aborted_goal_without_a_reason_has_an_empty_text(ends: Ends) ->
 
 
 async def test_a_failing_goal_callback_raises_a_service_error(ends: Ends) -> None:
-    """With type and text of the exception, at once."""
+    """With the type and text of the exception, at once."""
 
     def fail(_goal: Fibonacci.Goal) -> GoalResponse:
         raise LookupError("no map")
@@ -465,7 +465,7 @@ async def test_a_wrong_goal_is_refused_where_it_is_sent(
 
 
 async def test_cancel_returns_the_answer_of_the_server(ends: Ends) -> None:
-    """The goal has not ended then; the result tells how it did."""
+    """The goal has not ended yet; the result tells how it did."""
     sent, _ = await begin(ends)
 
     response = await sent.cancel()
@@ -478,7 +478,7 @@ async def test_cancel_returns_the_answer_of_the_server(ends: Ends) -> None:
 
 
 async def test_a_refused_cancel_request_says_so(ends: Ends) -> None:
-    """And the goal goes on."""
+    """And the goal continues."""
     ends.server.register_cancel_callback(None)
     sent, goal = await begin(ends)
 
@@ -613,7 +613,7 @@ async def test_cancelling_after_the_end_sends_nothing(ends: Ends) -> None:
 
 
 async def test_a_server_that_keeps_silent_does_not_keep_a_cancelled_task(ends: Ends) -> None:
-    """A cancelled task must end at once; the request does not depend on it."""
+    """A cancelled task must end at once, independent of the request."""
     never = asyncio.Event()
 
     async def decide(_goal: Goal) -> CancelResponse:
@@ -690,7 +690,7 @@ async def test_a_stopping_node_loses_its_goals_at_once(ends: Ends) -> None:
 
 
 async def test_a_new_server_does_not_know_the_goals_of_the_old_one(ends: Ends) -> None:
-    """A goal is not taken up by a server that was started again."""
+    """A restarted server does not take goals over."""
     sent, _ = await begin(ends)
     ends.server.destroy()
     with pytest.raises(GoalLostError):
@@ -705,7 +705,7 @@ async def test_a_new_server_does_not_know_the_goals_of_the_old_one(ends: Ends) -
 
 
 async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
-    """With no time to keep it, a result can be gone before it is asked for; that is no error."""
+    """Without time to keep it, a result can be gone before it is requested; that is no error."""
     server = ends.serving.create_action_server(Fibonacci, "other", ends.worker)
     client: Client = ends.asking.create_action_client(Fibonacci, "other")
     await client.wait_for_server()
@@ -765,7 +765,7 @@ async def test_a_goal_that_no_task_awaits_outlives_its_client(ends: Ends) -> Non
 
 
 async def gone_from(serving: Node) -> None:
-    """Wait until the server's side knows no client any more."""
+    """Wait until the server's side no longer knows a client."""
     while serving.count_clients("/fibonacci/_action/cancel_goal"):
         await serving.graph.changed()
 
@@ -795,7 +795,7 @@ def print_nothing() -> None:
 
 
 async def test_a_feedback_callback_is_looked_at_when_the_goal_is_sent(ends: Ends) -> None:
-    """The mistake shows where it was made."""
+    """The mistake is reported where it was made."""
     with pytest.raises(CallbackSignatureError, match="must take"):
         await ends.client.send_goal(Fibonacci.Goal(), print_nothing)  # type: ignore[arg-type]  # the mistake
 
@@ -822,7 +822,7 @@ async def test_texts_say_what_they_are_about(ends: Ends) -> None:
 
 
 async def test_a_client_that_cannot_be_made_leaves_nothing(ends: Ends) -> None:
-    """Its parts are made one after the other, and the last may be refused."""
+    """Its parts are created one after another, and the last may be refused."""
     before = endpoint_count(ends.asking)
 
     with pytest.raises(TypeError):
@@ -881,7 +881,7 @@ async def test_a_server_that_goes_before_it_was_found_whole_loses_the_goal(ends:
 
 
 async def test_cancelling_a_goal_whose_server_has_gone_is_an_error_at_once(ends: Ends) -> None:
-    """A request without a server would wait for ever."""
+    """A request without a server would wait forever."""
     sent, _ = await begin(ends)
     ends.server.destroy()
     await gone(ends)

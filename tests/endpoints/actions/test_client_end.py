@@ -1,4 +1,4 @@
-"""In whatever way a client goes, its waits end, and so do the goals that are awaited."""
+"""However a client ends, its waits end, and so do the awaited goals."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 
 
 class Program:
-    """A node with a client, run by a task of its own, and a server that serves it.
+    """A node with a client, run by its own task, and a server for it.
 
     Attributes:
         outcomes: What the waits raised.
@@ -52,7 +52,7 @@ class Program:
         raise ValueError("no map")
 
     async def record(self, wait: Wait) -> None:
-        """Keep what `wait` raises."""
+        """Record the exception that `wait` raises."""
         try:
             await wait(self)
         except (asyncio.CancelledError, EntityDestroyedError) as error:
@@ -119,7 +119,7 @@ in_process = pytest.mark.parametrize("ends", ["local"], indirect=True)
 
 
 async def send_goal(program: Program) -> None:
-    """Await the decision of a server that has not decided."""
+    """Await the decision of an undecided server."""
 
     async def decide(_goal: object) -> GoalResponse:
         program.waits.set()
@@ -206,7 +206,7 @@ async def gone(program: Program) -> None:
 WAITS: list[Wait] = [send_goal, call, call_with_feedback, result, feedback, answer]
 
 
-# How the client goes
+# How the client ends
 
 
 def a_callback_fails(program: Program) -> None:
@@ -248,7 +248,7 @@ WAYS: list[Way] = [
 
 
 async def expect_canceled(program: Program) -> None:
-    """See that the goal ends, if it was begun."""
+    """Check that the goal ends, if it was started."""
     program.server_may_decide.set()
     with suppress(asyncio.QueueEmpty):
         goal = program.worker.begun.get_nowait()
@@ -261,7 +261,7 @@ async def expect_canceled(program: Program) -> None:
 async def test_a_task_of_others_gets_an_error_and_its_goal_is_cancelled(
     program: Program, wait: Wait, leave: Way
 ) -> None:
-    """Nobody has cancelled it, such as a request of a web server; and the robot must stop."""
+    """Nobody has cancelled the task, such as a request of a web server; and the robot must stop."""
     waiting = beside(program.record(wait))
     await program.waits.wait()
 
@@ -321,7 +321,7 @@ async def test_the_goals_of_others_end_with_their_context(program: Program) -> N
 
 @in_process
 async def test_a_loop_that_was_left_leaves_its_goal_alone(program: Program) -> None:
-    """Nothing depends on the goal after ``break``, so it goes on when its client ends."""
+    """Nothing depends on the goal after ``break``, so it continues when its client ends."""
     sent = await program.client.send_goal(Fibonacci.Goal())
     goal = await program.worker.begun.get()
     goal.publish_feedback(Fibonacci.Feedback())
@@ -336,7 +336,7 @@ async def test_a_loop_that_was_left_leaves_its_goal_alone(program: Program) -> N
 
 @in_process
 async def test_a_node_that_fails_can_still_await_a_goal_in_finally(program: Program) -> None:
-    """Such as the way home: as in a node that is destroyed, results come until callbacks end."""
+    """Such as a goal to return home: as in a destroyed node, results arrive until callbacks end."""
     results = asyncio.Queue[Any]()
     begun = asyncio.Event()
 

@@ -37,7 +37,7 @@ LOST_SEC = 3.0
 
 
 class CountingClock(ManualClock):
-    """Counts how often it calls anybody."""
+    """Counts how often it calls back."""
 
     wakes = 0
 
@@ -51,7 +51,7 @@ class CountingClock(ManualClock):
         return super().call_at(steady_ns, wake)
 
     async def wakes_in(self, seconds: float) -> int:
-        """Advance by some seconds, and return how often it called anybody meanwhile."""
+        """Advance by some seconds, and return the number of callbacks meanwhile."""
         before = self.wakes
         await self.advance(seconds)
         return self.wakes - before
@@ -71,7 +71,7 @@ async def owner(node_factory: Callable[..., Node]) -> Node:
 
 @pytest.fixture
 def client(owner: Node) -> PlainClient:
-    """A client of plain calls, which gives no sign by itself."""
+    """A client of plain calls, which sends no signs of life by itself."""
     return PlainClient(owner)
 
 
@@ -83,7 +83,7 @@ def worker() -> Worker:
 
 @pytest.fixture
 def serve(node: Node, worker: Worker) -> Serve:
-    """Make a server of ``fibonacci`` that refuses to cancel, as only its own decision counts."""
+    """Create a server of ``fibonacci`` that refuses to cancel, as only its own decision counts."""
 
     def make(
         execute: Callable[[Goal], Any] = worker, **options: Any
@@ -109,7 +109,7 @@ async def test_a_goal_is_canceled_when_its_client_falls_silent(
     manual_clock: ManualClock,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Three seconds after the last sign, whatever `cancel_callback` would say; the log tells."""
+    """Three seconds after the last sign, whatever `cancel_callback` says; this is logged."""
     asked: list[Goal] = []
     serve(cancel_callback=asked.append)
     await client.send()
@@ -205,7 +205,7 @@ async def test_an_offloaded_callback_sees_that_its_client_is_lost(
 async def test_a_goal_that_waits_for_its_turn_is_canceled_without_being_executed(
     serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """Accepted is enough: nobody is there for it any more."""
+    """Being accepted suffices: nobody waits for it any more."""
     server = serve(concurrent=False)
     await client.send(1)
     await client.send(2)
@@ -265,7 +265,7 @@ async def test_only_the_goals_of_the_lost_client_end(
 async def test_a_client_that_leaves_its_goal_on_purpose_is_not_lost(
     serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """It has said so."""
+    """It has announced that."""
     serve()
     await client.send()
     await client.sign()
@@ -289,7 +289,7 @@ async def test_a_client_without_signs_is_lost_when_it_leaves_the_graph(
     manual_clock: ManualClock,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Nothing else tells of it."""
+    """Nothing else reports it."""
     serve()
     await client.send()
     goal = await worker.begun.get()
@@ -350,7 +350,7 @@ def watch(graph: Graph, lost: Lost, manual_clock: ManualClock) -> Iterator[Clien
 async def test_a_client_over_dds_may_be_found_after_its_goal(
     watch: ClientWatch, graph: Graph, lost: Lost, manual_clock: ManualClock
 ) -> None:
-    """A goal is often quicker than the graph; its client has not gone, and must be missed later."""
+    """A goal is often faster than the graph; its client has not gone, and must be missed later."""
     # Their gids in the graph are not those that their requests have.
     first = client_of("first", b"1" * 16, over_rcl=True)
     second = client_of("second", b"2" * 16, over_rcl=True)
@@ -391,7 +391,7 @@ async def test_a_client_that_goes_before_its_goal_is_decided_on_loses_it(
     worker: Worker,
     manual_clock: CountingClock,
 ) -> None:
-    """It must not begin to drive for nobody."""
+    """It must not start to drive for nobody."""
     may_decide = asyncio.Event()
 
     async def decide(_goal: object) -> GoalResponse:
@@ -436,7 +436,7 @@ async def test_no_goal_is_watched_that_is_not_accepted(
 async def test_a_client_that_is_found_later_than_its_goal_is_not_lost(
     watch: ClientWatch, graph: Graph, lost: Lost, manual_clock: ManualClock
 ) -> None:
-    """Its place in the graph may come by another way than its request."""
+    """Its entry in the graph may arrive by another route than its request."""
     client = client_of("owner", b"1" * 16)
     watch.add(b"goal", client.gid)
 
@@ -459,13 +459,13 @@ async def test_a_client_that_is_never_found_is_lost(
     assert lost == [[b"goal"]]
 
 
-# A server that stood still
+# A server that was stalled
 
 
 async def test_a_server_that_stood_still_waits_before_it_judges(
     serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """The client was silent for as long as the server was deaf."""
+    """The client was silent for as long as the server was stalled."""
     serve()
     await client.send()
     await client.sign()
@@ -481,7 +481,7 @@ async def test_a_server_that_stood_still_waits_before_it_judges(
 async def test_a_server_that_stood_still_goes_on_with_a_client_that_is_alive(
     serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """Its signs have waited."""
+    """Its signs of life have waited."""
     serve()
     await client.send()
     await client.sign()
@@ -498,7 +498,7 @@ async def test_a_server_that_stood_still_goes_on_with_a_client_that_is_alive(
 async def test_a_server_that_stood_still_gives_those_time_that_have_left_the_graph(
     serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """Its own connections were cut meanwhile, so that everyone has left; they come back."""
+    """Its own connections were cut meanwhile, so everyone has left; they come back."""
     serve()
     await client.send()
     goal = await worker.begun.get()
@@ -514,7 +514,7 @@ async def test_a_server_that_stood_still_gives_those_time_that_have_left_the_gra
 async def test_a_server_that_is_always_late_finds_a_lost_client_all_the_same(
     serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """A callback that blocks for a second again and again must not keep the robot driving."""
+    """A callback that repeatedly blocks for a second must not keep the robot driving."""
     serve()
     await client.send()
     await client.sign()
@@ -614,7 +614,7 @@ async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
     monkeypatch: pytest.MonkeyPatch,
     manual_clock: ManualClock,
 ) -> None:
-    """Its place in the graph may come later than the answer of the other service."""
+    """Its entry in the graph may arrive later than the answer of the other service."""
     with monkeypatch.context() as not_found:
         not_found.setattr(owner.graph, "endpoints", lambda *_, **__: [])
         await asking.send_goal(Fibonacci.Goal())
@@ -630,7 +630,7 @@ async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
 async def test_a_sign_that_could_not_be_delivered_is_given_again_soon(
     asking: Client, owner: Node, manual_clock: ManualClock
 ) -> None:
-    """The server learns only from the first one that the client gives signs."""
+    """The server learns only from the first one that the client sends signs of life."""
     await asking.send_goal(Fibonacci.Goal())
     (sign,) = signs_of(asking)._goals.values()
     assert sign is not None
@@ -646,7 +646,7 @@ async def test_a_sign_that_could_not_be_delivered_is_given_again_soon(
 async def test_a_client_that_was_taken_for_lost_learns_why(
     asking: Client, manual_clock: ManualClock
 ) -> None:
-    """When it goes on: its goal was canceled by nobody's request."""
+    """When it continues: its goal was canceled without a request."""
     call = asyncio.ensure_future(asking.call(Fibonacci.Goal()))  # noqa: TID251  # owned by the test
     await settle()
     signs_of(asking).stop()  # as if the process were frozen
@@ -681,7 +681,7 @@ async def test_a_client_that_ends_properly_leaves_goals_that_nobody_awaits(
     manual_clock: ManualClock,
     end: Callable[[Client, Node], None],
 ) -> None:
-    """It was sent to go on."""
+    """It was meant to continue."""
     await asking.send_goal(Fibonacci.Goal())
     goal = await worker.begun.get()
 
@@ -718,7 +718,7 @@ async def test_a_node_that_fails_ends_properly(manual_clock: ManualClock) -> Non
 
 @pytest.mark.parametrize("link", [True, False], ids=["link", "zenoh"])
 async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, link: bool) -> None:
-    """A goal lives as long as its client gives signs, and ends when they stay out."""
+    """A goal lives as long as its client sends signs of life, and ends when they stop."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     worker = Worker()

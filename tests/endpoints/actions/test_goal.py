@@ -63,7 +63,7 @@ def test_every_other_move_is_refused(before: str, event: str) -> None:
 
 
 def test_an_illegal_move_says_what_is_possible() -> None:
-    """The text is what a user sees who called succeed() too early."""
+    """The text is for a user who called succeed() too early."""
     with pytest.raises(
         GoalTransitionError,
         match="goal 42: cannot SUCCEED while ACCEPTED; only EXECUTE, CANCEL_GOAL is allowed",
@@ -92,7 +92,7 @@ def test_a_number_from_a_later_ros_reads_as_unknown() -> None:
 
 
 def test_a_word_is_no_state() -> None:
-    """Only numbers come from the wire; anything else is a mistake in a program."""
+    """Only numbers arrive from the wire; anything else is a mistake in a program."""
     with pytest.raises(ValueError, match="is not a valid GoalStatus"):
         GoalStatus("SUCCEEDED")  # type: ignore[arg-type]  # the mistake
 
@@ -151,7 +151,7 @@ def test_a_request_for_an_unknown_goal_says_so() -> None:
 
 @pytest.mark.parametrize("status", ["SUCCEEDED", "CANCELED", "ABORTED", "CANCELING"])
 def test_a_request_for_a_goal_that_cannot_be_cancelled_says_terminated(status: str) -> None:
-    """As rcl does; also for one that is being cancelled already."""
+    """As in rcl; also for one that is already being cancelled."""
     goals = [GoalKey(ONE, 100, GoalStatus[status])]
 
     assert goals_to_cancel(goals, GoalKey(ONE, 0)) == (CancelCode.GOAL_TERMINATED, [])
@@ -159,7 +159,7 @@ def test_a_request_for_a_goal_that_cannot_be_cancelled_says_terminated(status: s
 
 @pytest.mark.parametrize("asked", [GoalKey(ALL_GOALS, 0), GoalKey(ALL_GOALS, 500)])
 def test_a_request_for_many_passes_over_those_that_have_ended(asked: GoalKey) -> None:
-    """To cancel all is no mistake when some are done."""
+    """Cancelling all is no mistake if some have ended."""
     goals = [GoalKey(ONE, 100, GoalStatus.SUCCEEDED), GoalKey(TWO, 200, GoalStatus.EXECUTING)]
 
     assert goals_to_cancel(goals, asked) == (CancelCode.NONE, [TWO])

@@ -1,4 +1,4 @@
-"""Requests to an action server in any order: its node goes on."""
+"""Requests to an action server in any order: its node continues."""
 
 from __future__ import annotations
 

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from aionode.testing import ManualClock
 
 MANY = [bytes([number]) for number in range(255)] * 100_000
-"""So many goals that the time between two lists is far longer than a test."""
+"""So many goals that the interval between two lists is far longer than a test."""
 
 
 class Lists:
-    """Counts the lists that are sent, of so many goals."""
+    """Counts the lists that are sent for a number of goals."""
 
     def __init__(self, goals: Sequence[bytes]) -> None:
         self.sent = 0
@@ -61,7 +61,7 @@ async def test_with_many_goals_the_list_is_not_sent_for_each_change() -> None:
 
 
 async def test_the_last_change_of_many_goals_is_always_sent() -> None:
-    """The last list is what late subscriptions get, and what clients of ROS go by."""
+    """Late subscriptions get the last list, and ROS clients rely on it."""
     lists = Lists(MANY[:11])
     await lists.change()
     lists.has_sent.clear()
@@ -75,7 +75,7 @@ async def test_the_last_change_of_many_goals_is_always_sent() -> None:
 
 
 async def test_a_server_that_ends_sends_the_changes_that_wait(node: Node) -> None:
-    """A result that was reached just before the end has been reached."""
+    """A result reached just before the end counts."""
     client, worker = PlainClient(node), Worker()
     worker.may_end.set()
     server = node.create_action_server(Fibonacci, "fibonacci", worker)
@@ -100,7 +100,7 @@ def serve(
 
 
 async def test_goals_beyond_the_limit_are_rejected(node: Node) -> None:
-    """Clients that send goals which never end take no memory without bound."""
+    """Clients that send goals which never end do not take unlimited memory."""
     client = PlainClient(node)
     server = serve(node, Worker(), 3)
 
@@ -149,7 +149,7 @@ def test_goals_are_limited_in_bytes() -> None:
 
 
 def test_all_goals_that_make_room_for_a_large_one_are_told_of() -> None:
-    """Who has more to forget of each of them would keep that for ever."""
+    """Otherwise state kept for each of them elsewhere would stay forever."""
     goals = GoalStore(lambda: 0, limit=10, kept_ns=-1, limit_bytes=10_000)
     small = [Large(3_000) for _ in range(3)]
     for number, handle in enumerate(small):
@@ -162,7 +162,7 @@ def test_all_goals_that_make_room_for_a_large_one_are_told_of() -> None:
 
 
 async def test_a_full_server_tells_its_client_why_it_rejects(node: Node) -> None:
-    """The caller waits and sends the goal again, or the robot's owner allows more."""
+    """The caller waits and sends the goal again, or the robot's owner raises the limit."""
     serve(node, Worker(), 1)
     client = node.create_action_client(Fibonacci, "fibonacci")
     await client.send_goal(Fibonacci.Goal(order=1))
@@ -174,7 +174,7 @@ async def test_a_full_server_tells_its_client_why_it_rejects(node: Node) -> None
 async def test_a_full_server_says_why_it_rejects_once_a_second(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """ROS sends the client no reason; and what clients send does not fill the log."""
+    """ROS sends the client no reason; and clients must not fill the log."""
     client, asked = PlainClient(node), []
 
     def decide(goal: Fibonacci.Goal) -> GoalResponse:

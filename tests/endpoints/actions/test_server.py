@@ -1,4 +1,4 @@
-"""Action servers, driven by plain service calls as any program on the wire may drive them."""
+"""Action servers, driven by plain service calls like any program on the network may send."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def worker() -> Worker:
 
 @pytest.fixture
 def serve(node: Node, worker: Worker) -> Serve:
-    """Make a server of ``fibonacci``; it cancels whatever it is asked to."""
+    """Create a server of ``fibonacci`` that cancels whatever it is asked to."""
 
     def make(
         execute: Callable[[Goal], Any] = worker, **options: Any
@@ -80,7 +80,7 @@ async def test_a_goal_is_accepted_with_the_time_of_the_server(
 async def test_a_goal_callback_sees_the_goal_and_may_reject_it(
     serve: Serve, client: PlainClient
 ) -> None:
-    """What cannot be done is better refused than aborted."""
+    """Impossible goals are better rejected than aborted."""
     serve(
         goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order < 10 else GoalResponse.REJECT
     )
@@ -90,7 +90,7 @@ async def test_a_goal_callback_sees_the_goal_and_may_reject_it(
 
 
 async def test_a_goal_callback_may_be_a_coroutine(serve: Serve, client: PlainClient) -> None:
-    """It may have to ask another service."""
+    """It may have to call another service."""
 
     async def decide(_goal: Fibonacci.Goal) -> GoalResponse:
         await checkpoint()
@@ -155,7 +155,7 @@ async def test_an_action_server_survives_a_failing_goal_callback(
 async def test_an_id_that_is_known_already_is_rejected(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """One id is one goal: while it runs, and as long as its result is kept."""
+    """One id is one goal: while it runs, and while its result is kept."""
     serve()
     assert (await client.send(1)).accepted
 
@@ -205,7 +205,7 @@ async def test_the_client_is_told_before_the_goal_is_handed_over(
 async def test_a_handed_over_goal_waits_until_it_is_executed(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """A server that does one goal at a time keeps the others, and says ACCEPTED of them."""
+    """A server that does one goal at a time keeps the others, with the status ACCEPTED."""
     kept: list[Goal] = []
     serve(handle_accepted_callback=kept.append)
     await client.send()
@@ -251,7 +251,7 @@ async def test_a_goal_can_be_executed_by_a_callback_of_its_own(
 async def test_a_failing_handle_accepted_callback_aborts_the_goal(
     serve: Serve, client: PlainClient
 ) -> None:
-    """Its client would wait for ever otherwise."""
+    """Its client would wait forever otherwise."""
 
     async def fail(_goal: Goal) -> None:
         raise LookupError("no room")
@@ -283,7 +283,7 @@ async def test_a_goal_succeeds_with_what_the_callback_returns(
 async def test_a_result_can_be_given_with_the_end(
     serve: Serve, client: PlainClient, ending: str
 ) -> None:
-    """Then it is sent at once, also if the callback goes on cleaning up."""
+    """Then it is sent at once, even if the callback continues with its cleanup."""
     cleaned = asyncio.Event()
 
     async def execute(goal: Goal) -> None:
@@ -301,7 +301,7 @@ async def test_a_result_can_be_given_with_the_end(
 
 
 async def test_a_sync_callback_executes_goals_too(serve: Serve, client: PlainClient) -> None:
-    """As rclpy's tutorial has it."""
+    """As in rclpy's tutorial."""
 
     def execute(goal: Goal) -> Fibonacci.Result:
         goal.succeed()
@@ -316,7 +316,7 @@ async def test_a_sync_callback_executes_goals_too(serve: Serve, client: PlainCli
 async def test_an_exception_aborts_the_goal_and_is_logged(
     serve: Serve, client: PlainClient, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The client gets an end and an empty result, the log the traceback; the node lives on."""
+    """The client gets an end and an empty result, the log the traceback; the node continues."""
 
     async def execute(_goal: Goal) -> Fibonacci.Result:
         raise LookupError("no such sequence")
@@ -373,7 +373,7 @@ async def test_a_forgotten_return_is_warned_about(
 async def test_a_wrong_result_is_refused_before_the_goal_ends(
     serve: Serve, client: PlainClient, wrong: Any, error: type[Exception]
 ) -> None:
-    """The callback hears of its mistake while it can still do something."""
+    """The callback learns of its mistake while it can still act."""
     caught: list[Exception] = []
 
     async def execute(goal: Goal) -> Fibonacci.Result:
@@ -596,7 +596,7 @@ async def test_a_shielded_callback_finishes_its_work(
 async def test_nothing_is_cancelled_by_default(
     node: Node, worker: Worker, client: PlainClient
 ) -> None:
-    """As in rclpy: a server says that it can stop by giving a cancel_callback."""
+    """As in rclpy: a server declares that it can stop by a cancel_callback."""
     node.create_action_server(Fibonacci, "fibonacci", worker)
     await client.send()
     goal = await worker.begun.get()
@@ -619,7 +619,7 @@ async def test_a_cancel_callback_that_answers_nonsense_rejects(
 async def test_a_goal_that_ends_while_it_is_decided_on_is_terminated(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """A slow cancel_callback may be overtaken; nothing illegal happens."""
+    """A slow cancel_callback may be overtaken; nothing invalid happens."""
 
     async def decide(_goal: Goal) -> CancelResponse:
         worker.may_end.set()
@@ -636,7 +636,7 @@ async def test_a_goal_that_ends_while_it_is_decided_on_is_terminated(
 async def test_a_failing_cancel_callback_tells_the_client(
     serve: Serve, client: PlainClient
 ) -> None:
-    """The goal goes on."""
+    """The goal continues."""
 
     def fail(_goal: Goal) -> CancelResponse:
         raise LookupError("which one?")
@@ -681,7 +681,7 @@ async def test_a_goal_that_waits_for_its_turn_is_canceled_at_once(
 async def test_a_goal_cancelled_before_it_was_executed_shows_it_to_its_callback(
     serve: Serve, client: PlainClient
 ) -> None:
-    """As in rclpy, where a callback looks first; if it waits all the same, it is cancelled."""
+    """As in rclpy, where a callback checks first; if it waits nevertheless, it is cancelled."""
     kept: list[Goal] = []
     seen: list[bool] = []
 
@@ -780,7 +780,7 @@ async def test_cancelling_all_where_there_is_nothing_is_no_error(
 async def test_every_request_for_a_result_is_answered(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """Also those that came before the end, and any number of them."""
+    """Including those that arrived before the end, and any number of them."""
     serve()
     await client.send()
     early = [asyncio.ensure_future(client.result()) for _ in range(3)]  # noqa: TID251  # beside
@@ -921,7 +921,7 @@ async def test_the_status_topic_tells_each_change_of_all_goals(
 async def test_late_subscriptions_get_the_newest_status(
     node: Node, serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """A tool that starts now sees the goals of now."""
+    """A tool that starts now sees the current goals."""
     serve()
     await client.send()
     await worker.begun.get()
@@ -932,7 +932,7 @@ async def test_late_subscriptions_get_the_newest_status(
     assert late.statuses == [{1: 2}]
 
 
-# The whole
+# The whole server
 
 
 async def test_stats_tell_how_goals_were_executed(
@@ -972,7 +972,7 @@ async def test_a_server_has_the_endpoints_that_ros_gives_it(node: Node, serve: S
 async def test_a_destroyed_server_leaves_nothing_behind(
     node: Node, serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """Its clients are told at once, its callbacks are cancelled, its tables are empty."""
+    """Its clients are notified at once, its callbacks are cancelled, its tables are empty."""
     before = endpoint_count(node)
     server = serve()
     await client.send()
@@ -1037,7 +1037,7 @@ async def test_a_callback_may_clean_up_when_the_server_is_gone(
 
 
 async def test_goals_wait_for_the_node_to_run() -> None:
-    """A server may be made in a constructor, long before there is a loop."""
+    """A server may be created in a constructor, long before there is a loop."""
     async with local_context() as context, Node("asking", context=context) as asking:
         node = Node("serving", context=context)
         worker = Worker()
@@ -1063,7 +1063,7 @@ async def test_something_else_than_an_action_is_refused(node: Node, wrong: Any) 
 
 
 async def test_callbacks_are_looked_at_when_the_server_is_made(node: Node, serve: Serve) -> None:
-    """A mistake shows where it was made, and nothing of the server is left."""
+    """A mistake is reported where it was made, and nothing of the server remains."""
     before = endpoint_count(node)
 
     with pytest.raises(CallbackSignatureError, match=r"must take \(goal_handle\)"):
@@ -1085,7 +1085,7 @@ async def test_a_destroyed_node_refuses_a_server(node: Node) -> None:
 
 
 async def test_a_server_that_cannot_be_made_leaves_nothing(node: Node) -> None:
-    """Its parts are made one after the other, and one of them may be refused."""
+    """Its parts are created one after another, and one of them may be refused."""
     before = endpoint_count(node)
 
     with pytest.raises(TypeError):
@@ -1118,7 +1118,7 @@ async def test_a_goal_is_aborted_whose_node_stops_before_its_callback_began(
 async def test_goals_go_on_beside_a_reader_that_does_not_read(
     node: Node, serve: Serve, worker: Worker, client: PlainClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A full KEEP_ALL subscription of a tool must not hold up or abort what a robot does."""
+    """A full KEEP_ALL subscription of a tool must neither delay nor abort what a robot does."""
     monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 3)
     monkeypatch.setattr("aionode.endpoints.actions.server.DRAIN_LIMIT_S", 0.01)
     serve()

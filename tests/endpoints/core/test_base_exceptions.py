@@ -1,7 +1,8 @@
-"""Every kind of callback, and every exception that Python gives a meaning of its own.
+"""Every kind of callback, and every exception with a special meaning in Python.
 
-`CancelledError` and `StopIteration` end tasks and generators where they are raised on purpose; out
-of a callback they are errors like any other. `KeyboardInterrupt` and `SystemExit` end the program.
+`CancelledError` and `StopIteration` end tasks and generators where they are raised on purpose;
+raised by a callback they are errors like any other. `KeyboardInterrupt` and `SystemExit` end the
+program.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ async def test_a_subscription_goes_on_with_the_next_message(
 async def test_a_timer_goes_on_with_the_next_period(
     node: Node, kind: str, mistake: Callable[[], None], manual_clock: Any
 ) -> None:
-    """A control loop that stood still without a word would leave the robot driving."""
+    """A control loop that silently stood still would leave the robot driving."""
     failing = Failing(kind, mistake)
     timer = node.create_timer(1.0, no_argument(failing), on_error="log", **failing.options)
     for _ in range(3):
@@ -125,7 +126,7 @@ async def test_a_timer_goes_on_with_the_next_period(
 async def test_a_service_answers_with_the_error_and_then_the_next_request(
     node: Node, kind: str, mistake: Callable[[], None]
 ) -> None:
-    """It would stay in the graph, and answer nobody."""
+    """Otherwise it would stay in the graph, and answer nobody."""
     failing = Failing(kind, mistake, Trigger.Response(success=True))
     node.create_service(Trigger, "switch", one_argument(failing), **failing.options)
     client = node.create_client(Trigger, "switch")
@@ -174,7 +175,7 @@ async def fails(node: Node) -> None:
 
 
 async def test_an_event_callback_fails_its_node(node: Node, mistake: Callable[[], None]) -> None:
-    """As that of a subscription does, and never silently."""
+    """Like that of a subscription, and never silently."""
     failing = Failing("sync", mistake)
     own = Node("watcher", context=node.context)
     events = PublisherEventCallbacks(matched=one_argument(failing))
@@ -219,7 +220,7 @@ async def test_an_error_function_that_fails_itself_fails_the_node(
 def test_the_end_of_the_program_goes_through(
     entity: str, error: type[BaseException], kind: str
 ) -> None:
-    """Whatever `on_error` says: a callback may end the program as any other code may."""
+    """Whatever `on_error` says: a callback may end the program like any other code."""
 
     def end(*_: object) -> None:
         raise error

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 
 def busy(milliseconds: float) -> None:
-    """Keep the loop from running, as a computation does."""
-    deadline_ns = thread_ns() + round(milliseconds * 1e6)  # what others take is not counted
+    """Keep the loop from running, like a computation."""
+    deadline_ns = thread_ns() + round(milliseconds * 1e6)  # time of others is not counted
     while thread_ns() < deadline_ns:
         pass
 
@@ -118,7 +118,7 @@ async def test_an_error_function_may_end_the_node(context: Context) -> None:
 async def test_a_cancelled_wait_inside_a_callback_is_an_error_of_the_callback(
     node: Node,
 ) -> None:
-    """A task ended by the cancellation of another would silence its subscription for ever."""
+    """A task ended by the cancellation of another would silence its subscription forever."""
     heard: list[int] = []
     seen: list[Exception] = []
 
@@ -246,7 +246,7 @@ async def test_a_coroutine_function_cannot_be_offloaded(node: Node) -> None:
 async def test_a_callback_that_blocks_the_loop_is_reported_once_a_second(
     context: Context, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """With its name, its topic, how long, and what helps."""
+    """With its name, its topic, the duration, and a remedy."""
 
     def slow_callback(msg: Int32) -> None:
         busy(3)
@@ -312,7 +312,7 @@ async def test_a_report_says_if_the_thread_did_not_run(
 
 @pytest.fixture
 def processor(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """How long the thread has waited for a processor, as a test says; and what is counted."""
+    """How long the thread has waited for a processor, set by the test, and the counts."""
     now = SimpleNamespace(waited_ns=0, waits=ProcessorWaits())
     monkeypatch.setattr(
         "aionode.endpoints.core.thread_time.thread_waited_ns", lambda: now.waited_ns
@@ -350,7 +350,7 @@ async def test_a_wait_for_a_processor_is_counted_and_not_reported_as_blocking(
 async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
     context: Context, capfd: pytest.CaptureFixture[str], processor: SimpleNamespace
 ) -> None:
-    """Only what the program can mend is in the figure."""
+    """The figure only contains what the program can fix."""
 
     def sleepy(msg: Int32) -> None:
         threading.Event().wait(0.1)
@@ -368,13 +368,13 @@ async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
 
 @pytest.fixture
 def high_load(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the load of the machine more than its cores can do."""
+    """Raise the load of the machine beyond what its cores can handle."""
     monkeypatch.setattr(os, "getloadavg", lambda: (1000.0, 0.0, 0.0))
 
 
 @pytest.mark.usefixtures("high_load")
 def test_waits_are_reported_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
-    """With what has come since the last line."""
+    """Including everything since the last line."""
     waits = ProcessorWaits()
 
     for second in range(61):
@@ -404,7 +404,7 @@ def test_short_waits_are_not_reported_while_the_load_is_low(
 
 
 def test_a_callback_that_somebody_debugs_is_not_reported() -> None:
-    """They know that it stands still."""
+    """The developer knows that it stands still."""
 
     class Debugger(pdb.Pdb):
         def trace(self, *_: object) -> None:
@@ -421,7 +421,7 @@ def test_a_callback_that_somebody_debugs_is_not_reported() -> None:
 
 
 def test_a_long_stop_at_a_breakpoint_is_taken_for_one() -> None:
-    """After the debugger has let the program go on, nothing but the time is left of it."""
+    """After the debugger has let the program continue, only the time shows it."""
     assert callback_runner.is_debugged(5_000_000_000, 1_000_000)
     assert not callback_runner.is_debugged(5_000_000_000, 4_900_000_000)
     assert not callback_runner.is_debugged(50_000_000, 1_000_000)
@@ -434,7 +434,7 @@ async def test_a_report_of_a_computation_does_not_speak_of_waiting() -> None:
 
 
 def test_a_reading_of_another_thread_says_nothing() -> None:
-    """A node that was created in one thread and runs in another."""
+    """A node may be created in one thread and run in another."""
     readings: list[ThreadTime] = []
     thread = threading.Thread(target=lambda: readings.append(ThreadTime()))
     thread.start()
@@ -466,7 +466,7 @@ async def test_an_async_callback_is_measured_between_its_waits(
 
 
 async def test_queue_wait_is_the_time_between_arrival_and_callback(node: Node) -> None:
-    """What a message waits for while an earlier one is worked on."""
+    """The time that a message waits while an earlier one is processed."""
     subscription = listen(node, lambda msg: busy(2))
     send(node, 2)
     await settle()

@@ -56,7 +56,7 @@ async def test_two_nodes_of_one_name_are_reported_once(
 async def test_a_node_of_another_process_with_the_same_name_is_reported(
     node: Node, context: Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Whichever of the two is seen second; a pair of others is theirs to report."""
+    """Whichever of the two is seen second; a pair of other processes is theirs to report."""
     context.graph.add_node(NodeInfo("abc", 0, "node", "/"))
     context.graph.add_node(NodeInfo("abc", 1, "other", "/"))
     context.graph.add_node(NodeInfo("def", 1, "other", "/"))
@@ -69,7 +69,7 @@ async def test_a_node_of_another_process_with_the_same_name_is_reported(
 async def test_a_node_that_follows_one_of_its_name_is_not_reported(
     context: Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A supervisor starts nodes again."""
+    """A supervisor restarts nodes."""
     for _ in range(2):
         async with Node("camera", context=context):
             pass

@@ -39,7 +39,7 @@ def listen(node: Node, callback: Any, **options: Any) -> Subscription[Int32]:
 def bring(
     subscription: Subscription[Int32], *numbers: int, inline_deadline_ns: int | None = None
 ) -> None:
-    """Deliver `numbers` as a transport does within one of its events."""
+    """Deliver `numbers` like a transport within one of its events."""
     if inline_deadline_ns is None:
         inline_deadline_ns = perf_ns() + MINUTE_NS
     for number in numbers:
@@ -71,21 +71,21 @@ class Asked(Request):
 
 
 def fail(_: AddTwoInts.Request) -> AddTwoInts.Response:
-    """Answer as a handler with a bug does."""
+    """Answer like a handler with a bug."""
     raise ValueError("no sums today")
 
 
 def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
-    """Answer as the tutorial's server does."""
+    """Answer like the tutorial's server."""
     response.sum = request.a + request.b
     return response
 
 
-# When
+# When they run
 
 
 async def test_an_idle_subscription_calls_back_within_the_event(node: Node) -> None:
-    """The loop need not turn once more, for any number of messages."""
+    """The loop need not iterate once more, for any number of messages."""
     heard: list[int] = []
     subscription = listen(node, lambda msg: heard.append(msg.data))
     await settle()
@@ -110,7 +110,7 @@ async def test_a_callback_that_wants_the_info_gets_it(node: Node) -> None:
 
 
 async def test_without_a_time_the_callback_waits_for_its_turn(node: Node) -> None:
-    """The caller is in a callback or in `publish`, and must not find others called."""
+    """The caller is in a callback or in `publish`, and must not see other callbacks run."""
     heard: list[int] = []
     subscription = listen(node, lambda msg: heard.append(msg.data))
     await settle()
@@ -121,7 +121,7 @@ async def test_without_a_time_the_callback_waits_for_its_turn(node: Node) -> Non
 
 
 async def test_a_local_publish_runs_no_callback(node: Node) -> None:
-    """Or callbacks would run inside callbacks."""
+    """Otherwise callbacks would run inside callbacks."""
     heard: list[int] = []
     listen(node, lambda msg: heard.append(msg.data))
     publisher = node.create_publisher(Int32, "numbers", 10)
@@ -133,7 +133,7 @@ async def test_a_local_publish_runs_no_callback(node: Node) -> None:
 
 
 async def test_after_the_time_of_the_event_messages_queue(node: Node) -> None:
-    """Slow callbacks would keep the loop for a whole burst."""
+    """Slow callbacks would occupy the loop for a whole burst."""
     heard: list[int] = []
     subscription = listen(node, lambda msg: heard.append(msg.data))
     await settle()
@@ -158,7 +158,7 @@ async def test_what_follows_a_queued_message_queues_too(node: Node) -> None:
 
 
 async def test_a_message_that_comes_during_a_callback_is_next(node: Node) -> None:
-    """It queues, and what comes behind it as well."""
+    """It is queued, and so are later ones."""
     heard: list[int] = []
 
     def callback(msg: Int32) -> None:
@@ -216,7 +216,7 @@ async def test_before_the_node_runs_messages_queue(context: Context) -> None:
         assert heard == [1]
 
 
-# What is the same
+# What stays the same
 
 
 async def test_callbacks_are_measured(node: Node) -> None:
@@ -334,7 +334,7 @@ async def test_a_keyboard_interrupt_goes_through(node: Node) -> None:
     assert heard == [2]
 
 
-# Something to await
+# Awaitable results
 
 
 async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: Node) -> None:
@@ -356,7 +356,7 @@ async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: 
 
 
 async def test_an_error_of_what_is_awaited_is_one_of_the_callback(node: Node) -> None:
-    """A foreign cancellation included."""
+    """Including a foreign cancellation."""
     seen: list[Exception] = []
 
     def callback(_: Int32) -> Awaitable[None]:
@@ -372,7 +372,7 @@ async def test_an_error_of_what_is_awaited_is_one_of_the_callback(node: Node) ->
 
 
 async def test_a_coroutine_that_cannot_be_awaited_any_more_is_closed(node: Node) -> None:
-    """A coroutine that never began would be reported by Python, far from its cause."""
+    """A coroutine that never started would be reported by Python, far from its cause."""
     begun: list[int] = []
 
     async def work(msg: Int32) -> None:
@@ -415,7 +415,7 @@ async def test_a_future_that_cannot_be_awaited_any_more_is_cancelled(node: Node)
 
 
 async def test_a_callback_may_destroy_its_subscription(node: Node) -> None:
-    """What the event still brings is not taken."""
+    """Messages that the event still delivers are not accepted."""
     heard: list[int] = []
 
     def callback(msg: Int32) -> None:
@@ -451,7 +451,7 @@ async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Con
 
 
 async def test_a_callback_may_destroy_its_node(node_factory: Callable[..., Node]) -> None:
-    """Nothing is called any more, and the node ends as if it were destroyed from outside."""
+    """Nothing more is called, and the node ends as if destroyed from outside."""
     heard: list[int] = []
     node = node_factory("brief")
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 async def test_an_offloaded_callback_publishes_what_it_computed(node: Node) -> None:
-    """That is what offloading is for; only `call_soon_threadsafe` may be called from a thread."""
+    """This is why callbacks are offloaded; threads may only call `call_soon_threadsafe`."""
     heard: list[str] = []
     node.create_subscription(String, "out", lambda msg: heard.append(msg.data))
     out = node.create_publisher(String, "out", 10)
@@ -85,7 +85,7 @@ def test_without_a_running_loop_calls_are_made_at_once() -> None:
 def test_a_thread_does_not_wait_for_a_loop_that_was_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A loop may be closed before it makes the last call of a thread."""
+    """A loop may be closed before it executes the last call of a thread."""
     monkeypatch.setattr(loop_affinity, "PATIENCE_S", 0.0)
     loop = asyncio.new_event_loop()
     place = LoopAffinity()

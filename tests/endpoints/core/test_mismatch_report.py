@@ -78,7 +78,7 @@ async def test_another_definition_in_another_process_is_reported(
 async def test_two_types_of_one_service_are_reported(
     node: Node, context: Context, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A client would wait for ever."""
+    """A client would wait forever."""
     node.create_client(AddTwoInts, "/do")
 
     context.graph.add_endpoint(remote(EndpointKind.SERVER, "/do", SetBool))

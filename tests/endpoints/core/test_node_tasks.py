@@ -1,4 +1,4 @@
-"""Which tasks are a node's own, and how their waits end."""
+"""The tasks that belong to a node, and how their waits end."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class WorkingMore(Working):
 
 
 async def test_a_task_that_the_constructor_starts_is_cancelled(aionode_context: Context) -> None:
-    """A program that works in such a task would end every Ctrl-C with a traceback."""
+    """Otherwise a program that works in such a task would end every Ctrl-C with a traceback."""
     node = WorkingMore(aionode_context)
 
     assert isinstance(await node.work, asyncio.CancelledError)
@@ -90,7 +90,7 @@ async def test_a_task_that_the_constructor_starts_is_cancelled(aionode_context: 
 async def test_a_callback_of_another_node_is_not_one_of_this_node(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """Also if the other node, or its subscription, was made in a callback of this one."""
+    """Even if the other node, or its subscription, was created in a callback of this one."""
     ends: list[End] = []
 
     def make(_msg: String) -> None:
@@ -113,7 +113,7 @@ async def test_the_body_of_a_node_is_cancelled(aionode_context: Context) -> None
 
 
 async def test_other_tasks_get_an_error(aionode_context: Context) -> None:
-    """Also those that the body starts: nobody has cancelled them."""
+    """Including those that the body starts: nobody has cancelled them."""
     async with Node("planner", context=aionode_context) as node, asyncio.TaskGroup() as tasks:
         asked = tasks.create_task(end_of(node))
 
@@ -140,7 +140,7 @@ async def by_the_body(_node: Node) -> None:
 async def test_the_error_of_a_failed_node_is_the_cause(
     aionode_context: Context, fail: Callable[[Node], Coroutine[Any, Any, None]]
 ) -> None:
-    """Whoever waits learns why the node has gone, without the group around it."""
+    """The one who waits learns why the node has gone, without the group around it."""
     node = Node("planner", context=aionode_context)
     with pytest.raises((ValueError, ExceptionGroup)):
         async with node:

@@ -66,7 +66,7 @@ def test_each_subject_has_its_share_of_the_log(caplog: pytest.LogCaptureFixture)
 
 
 def test_all_subjects_together_are_bounded(caplog: pytest.LogCaptureFixture) -> None:
-    """Names of topics are free."""
+    """Others may choose any topic names."""
     warnings = PeerWarnings("endpoints that do not match")
 
     for number in range(10_000):

@@ -1,4 +1,4 @@
-"""The times of publication, for any error of the clock of the publisher's host."""
+"""The times of publication, for any error of the publisher's clock."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Stream:
         self.fast_ns = fast_ns
 
     def come(self, published_ns: int, arrived_ns: int) -> int:
-        """Have a message arrive; return when it seems to have been published."""
+        """Let a message arrive; return when it seems to have been published."""
         stamp = published_ns - BEGAN + self.fast_ns
         return self.times.published_ns(GID, stamp, arrived_ns, BEGAN)
 
@@ -38,7 +38,7 @@ class Stream:
 def test_a_stream_shows_the_difference_of_the_clocks(
     fast_ns: int, delays: list[int], held_ns: int
 ) -> None:
-    """Up to the shortest delay; then a message that is held back is known for what it is."""
+    """Up to the shortest delay; then a delayed message is recognized."""
     stream = Stream(fast_ns)
     for number, delay_ns in enumerate(delays):
         stream.come(number * 100 * MS, number * 100 * MS + delay_ns)
@@ -53,7 +53,7 @@ def test_a_stream_shows_the_difference_of_the_clocks(
 
 @given(st.lists(st.integers(1 * MS, 10 * S), min_size=1, max_size=20), st.integers(0, S))
 def test_what_was_held_back_comes_at_once(intervals: list[int], wait_ns: int) -> None:
-    """A publisher that was never heard before has no slow clock for that."""
+    """A publisher that was never received before cannot be known to have a slow clock."""
     stream = Stream()
     published_ns = -sum(intervals) - wait_ns
     for number, interval_ns in enumerate(intervals):
@@ -64,7 +64,7 @@ def test_what_was_held_back_comes_at_once(intervals: list[int], wait_ns: int) ->
 
 @given(st.lists(st.integers(0, 49 * MS), min_size=2, max_size=30), st.integers(0, 100 * S))
 def test_on_one_host_the_time_of_publication_is_exact(delays: list[int], held_ns: int) -> None:
-    """However busy the host is: a command of before a stop came after it, as if it were newer."""
+    """However busy the host is: a command from before a stop arrived after it, as if newer."""
     stream = Stream()
     for number, delay_ns in enumerate(delays):
         published_ns = number * 100 * MS
@@ -82,7 +82,7 @@ def test_one_message_shows_that_a_clock_is_fast() -> None:
 
 
 def test_two_messages_show_that_a_clock_is_slow() -> None:
-    """The first seems to have been held back; the second has come at the pace of publication."""
+    """The first seems to have been delayed; the second arrived at the pace of publication."""
     stream = Stream(fast_ns=-60 * S)
     assert stream.come(0, 3 * MS) == -60 * S
     assert stream.come(100 * MS, 103 * MS) == 103 * MS
@@ -112,12 +112,12 @@ def test_clocks_may_drift_apart() -> None:
 
 
 def test_a_message_without_a_stamp_was_published_when_it_came() -> None:
-    """There is nothing else to go by."""
+    """There is nothing else to rely on."""
     assert PublicationTimes().published_ns(GID, 0, 5, BEGAN) == 5
 
 
 def test_few_publishers_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever comes from the network is bounded."""
+    """Anything from the network is bounded."""
     clocks = living(publication_times.PublisherClock)
     monkeypatch.setattr(publication_times, "REMEMBERED_PUBLISHERS", 2)
     times = PublicationTimes()

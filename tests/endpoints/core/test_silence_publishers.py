@@ -1,4 +1,4 @@
-"""The publishers of a topic that leave, are lost, return, or send what is late."""
+"""The publishers of a topic that leave, are lost, return, or send late messages."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ MACHINE = SteadyClock()
 
 @pytest.fixture
 def clock() -> ManualClock:
-    """The time, which tests step."""
+    """The time, stepped by the tests."""
     return ManualClock(Time(seconds=1000))
 
 
 @pytest.fixture
 def network(clock: ManualClock) -> FaultyTransport:
-    """What carries the messages; a test sets its faults."""
+    """The transport of the messages; a test sets its faults."""
     return FaultyTransport(LocalTransport(), clock=clock)
 
 
 @pytest.fixture
 async def node(clock: ManualClock, network: FaultyTransport) -> AsyncIterator[Node]:
-    """A node whose messages to itself take that way."""
+    """A node whose messages to itself use that transport."""
     async with quiet_node("node", Context(transport=network, clock=clock)) as node:
         yield node
 
@@ -54,7 +54,7 @@ async def node(clock: ManualClock, network: FaultyTransport) -> AsyncIterator[No
 async def test_a_message_of_before_the_silence_never_comes_after_it(
     node: Node, network: FaultyTransport, clock: ManualClock
 ) -> None:
-    """It was held back on its way; the one that is published later is a new command."""
+    """It was delayed in transit; one that is published later is a new command."""
     log: list[object] = []
     subscription = node.create_subscription(
         Int32, "n", lambda msg: log.append(msg.data), on_silence=lambda: log.append("stop")
@@ -81,7 +81,7 @@ async def test_a_message_of_before_the_silence_never_comes_after_it(
 async def test_the_clock_of_another_host_may_be_wrong(
     node: Node, clock: ManualClock, by_s: int
 ) -> None:
-    """What counts is how much later one message was published than another."""
+    """What matters is how much later one message was published than another."""
     log: list[object] = []
     subscription = node.create_subscription(
         Int32, "n", lambda msg: log.append(msg.data), on_silence=lambda: log.append("stop")
@@ -109,7 +109,7 @@ async def test_the_clock_of_another_host_may_be_wrong(
 
 
 class Elsewhere:
-    """A publisher in another context, of which the graph tells."""
+    """A publisher in another context, which the graph shows."""
 
     def __init__(self, node: Node, subscription: Subscription[Int32]) -> None:
         self.graph = node.graph
@@ -135,12 +135,12 @@ class Elsewhere:
         return self.linked
 
     def appear(self) -> None:
-        """Be announced."""
+        """Announce it."""
         self.graph.add_node(self.node)
         self.graph.add_endpoint(self.info)
 
     def vanish(self) -> None:
-        """Be announced no more, as a process whose connection has ended."""
+        """Withdraw it, like a process whose connection has ended."""
         self.graph.remove_endpoint(self.info)
         self.graph.remove_node(self.node)
 
@@ -152,7 +152,7 @@ class Elsewhere:
 
 @pytest.fixture
 def stops(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The calls of `on_silence`; what is waited for in real time takes a few milliseconds."""
+    """The calls of `on_silence`; waiting in real time takes a few milliseconds."""
     monkeypatch.setattr(silence_watch, "MOMENT_S", 0.005)
     monkeypatch.setattr(silence_watch, "RETURN_S", 0.05)
     return []
@@ -160,7 +160,7 @@ def stops(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.fixture
 async def elsewhere(node: Node, stops: list[str]) -> Elsewhere:
-    """A publisher that was heard."""
+    """A publisher from which messages have arrived."""
     subscription = node.create_subscription(
         Int32, "n", lambda _: None, on_silence=lambda: stops.append("stop"), silence_sec=60
     )
@@ -179,7 +179,7 @@ async def passes() -> None:
 async def test_a_publisher_that_is_withdrawn_stops_the_wheels(
     elsewhere: Elsewhere, stops: list[str]
 ) -> None:
-    """Its node is there still, so that nothing was lost on the way."""
+    """Its node is still there, so nothing was lost in transit."""
     elsewhere.graph.remove_endpoint(elsewhere.info)
     await until(lambda: stops)
     assert stops == ["stop"]
@@ -199,7 +199,7 @@ async def test_a_process_that_is_lost_stops_the_wheels(
 async def test_a_process_whose_link_has_ended_too_stops_the_wheels_sooner(
     elsewhere: Elsewhere, stops: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A link ends with the process alone, so that nothing is waited for."""
+    """A link only ends with its process, so there is nothing to wait for."""
     monkeypatch.setattr(silence_watch, "RETURN_S", 3600)
     elsewhere.linked = False
     elsewhere.vanish()
@@ -208,7 +208,7 @@ async def test_a_process_whose_link_has_ended_too_stops_the_wheels_sooner(
 
 
 async def test_a_process_that_is_linked_is_not_lost(elsewhere: Elsewhere, stops: list[str]) -> None:
-    """Zenoh has lost it: its commands come by the link."""
+    """Zenoh has lost it, but its commands arrive over the link."""
     elsewhere.linked = True
     elsewhere.vanish()
     await passes()
@@ -216,7 +216,7 @@ async def test_a_process_that_is_linked_is_not_lost(elsewhere: Elsewhere, stops:
 
 
 async def test_a_process_that_returns_was_not_lost(elsewhere: Elsewhere, stops: list[str]) -> None:
-    """The recovery has cut its connection, and Zenoh has made it anew."""
+    """The recovery has cut its connection, and Zenoh has re-established it."""
     elsewhere.vanish()
     await elsewhere.looked.wait()
     elsewhere.appear()
@@ -228,7 +228,7 @@ async def test_a_process_that_returns_was_not_lost(elsewhere: Elsewhere, stops: 
 async def test_a_process_that_goes_with_a_router_is_out_of_reach(
     elsewhere: Elsewhere, stops: list[str], first: str
 ) -> None:
-    """The router is restarted: silence alone counts."""
+    """The router is restarted: only silence counts."""
     if first == "router":
         elsewhere.graph.router_lost_ns = perf_ns()
     elsewhere.vanish()
@@ -251,7 +251,7 @@ async def test_a_silence_ends_the_search_for_a_publisher(
 async def test_many_publishers_are_not_remembered(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever comes from the network is bounded."""
+    """Anything from the network is bounded."""
     monkeypatch.setattr(silence_watch, "REMEMBERED_PUBLISHERS", 3)
     subscription = node.create_subscription(
         Int32, "n", lambda _: None, on_silence=lambda: None, silence_sec=60
@@ -264,7 +264,7 @@ async def test_many_publishers_are_not_remembered(
 
 
 async def test_a_lifespan_and_a_silence_go_together(node: Node, clock: ManualClock) -> None:
-    """A message that has expired is none; the monitor of the policy is asked first."""
+    """An expired message does not count; the policy's monitor is asked first."""
     log: list[object] = []
     profile = QoSProfile(depth=10, lifespan=Duration(seconds=1), history=HistoryPolicy.KEEP_LAST)
     subscription = node.create_subscription(

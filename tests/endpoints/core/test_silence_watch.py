@@ -1,4 +1,4 @@
-"""Subscriptions that have what they drive stopped when their topic falls silent."""
+"""Subscriptions that stop what they drive when their topic falls silent."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 @pytest.fixture
 def clock(manual_clock: ManualClock) -> ManualClock:
-    """The time of the context, which tests step."""
+    """The time of the context, stepped by the tests."""
     return manual_clock
 
 
@@ -57,7 +57,7 @@ class Driven:
         self.log.append(msg.data)
 
     def stop(self) -> None:
-        """Take a silence."""
+        """Record a silence."""
         self.log.append("stop")
 
 
@@ -74,7 +74,7 @@ def send(publisher: Publisher[Int32], *numbers: int) -> None:
 
 
 async def logged(caplog: pytest.LogCaptureFixture, text: str) -> None:
-    """Wait until the log says something."""
+    """Wait until the log contains something."""
     async with asyncio.timeout(5):
         while text not in caplog.text:
             await MACHINE.sleep(0.001)
@@ -86,7 +86,7 @@ async def logged(caplog: pytest.LogCaptureFixture, text: str) -> None:
 async def test_a_topic_that_falls_silent_stops_the_wheels_once(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """After `silence_sec`, 0.3 by default, however long the silence goes on."""
+    """After `silence_sec`, 0.3 by default, however long the silence lasts."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     publisher = teleop.create_publisher(Int32, "n", 10)
     send(publisher, 1)
@@ -101,7 +101,7 @@ async def test_a_topic_that_falls_silent_stops_the_wheels_once(
 async def test_nothing_is_stopped_that_was_never_commanded(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """It is armed by the first message; a publisher that only exists is none."""
+    """The first message arms it; a publisher that merely exists does not."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     publisher = teleop.create_publisher(Int32, "n", 10)
     await clock.advance(100)
@@ -113,7 +113,7 @@ async def test_nothing_is_stopped_that_was_never_commanded(
 async def test_each_message_begins_the_time_anew(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Whoever sends it: silence is that of the topic."""
+    """Whoever sends it: the silence is that of the topic."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=1)
     publishers = [teleop.create_publisher(Int32, "n", 10) for _ in range(2)]
     for number in range(6):
@@ -158,7 +158,7 @@ async def test_a_message_that_a_filter_rejects_is_none(
 async def test_a_message_that_was_kept_through_a_silence_moves_nothing(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Its mover may be blocked or frozen, and the wheels that are there stand still already."""
+    """Its mover may be blocked or frozen, and the wheels have already stopped."""
     publisher = teleop.create_publisher(Int32, "n", LATCHED)
     await clock.advance(1)  # a message without a time counts as published when it arrives
     send(publisher, 1)
@@ -226,7 +226,7 @@ async def test_another_that_was_heard_lately_goes_on(
 async def test_another_that_was_not_heard_lately_does_not_count(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """A publisher that only exists steers nothing."""
+    """A publisher that merely exists steers nothing."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=1)
     publishers = [teleop.create_publisher(Int32, "n", 10) for _ in range(3)]
     send(publishers[0], 1)
@@ -241,7 +241,7 @@ async def test_another_that_was_not_heard_lately_does_not_count(
 async def test_the_end_of_one_that_is_not_the_newest_is_no_fault(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """The one that steers now is there."""
+    """The one that steers now is still there."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=1)
     publishers = [teleop.create_publisher(Int32, "n", 10) for _ in range(2)]
     send(publishers[0], 1)
@@ -255,7 +255,7 @@ async def test_the_end_of_one_that_is_not_the_newest_is_no_fault(
 async def test_a_publisher_that_is_made_for_one_message_is_heard(
     wheels: Node, teleop: Node, driven: Driven
 ) -> None:
-    """It has gone before its message is handled: the message comes first, then the stop."""
+    """It has gone before its message is handled: the message is handled first, then the stop."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=60)
     publisher = teleop.create_publisher(Int32, "n", 10)
     send(publisher, 1)
@@ -268,7 +268,7 @@ async def test_a_publisher_that_is_made_for_one_message_is_heard(
 async def test_a_callback_may_end_the_last_publisher(
     wheels: Node, teleop: Node, driven: Driven, is_async: bool
 ) -> None:
-    """What it would await after that is cancelled, as it is no command any more."""
+    """Anything it would await after that is cancelled, since it is no longer a command."""
     publisher = teleop.create_publisher(Int32, "n", 10)
 
     async def move() -> None:
@@ -294,13 +294,13 @@ async def test_a_callback_may_end_the_last_publisher(
     assert driven.log == [1, 2, "stop"]
 
 
-# What happens before it
+# Before the stop
 
 
 async def test_a_running_callback_is_cancelled_first(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Its `finally` comes before the stop, so that nothing follows the stop."""
+    """Its `finally` runs before the stop, so that nothing follows the stop."""
 
     async def drive(msg: Int32) -> None:
         driven.drive(msg)
@@ -386,7 +386,7 @@ async def test_a_message_counts_from_its_arrival(
 async def test_a_full_queue_that_keeps_all_is_emptied(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """And its publisher, which waits for room, goes on."""
+    """And its publisher, which waits for room, continues."""
 
     async def drive(msg: Int32) -> None:
         driven.drive(msg)
@@ -432,7 +432,7 @@ async def test_a_callback_in_a_thread_is_waited_for(
 async def test_a_callback_that_does_not_end_is_named(
     caplog: pytest.LogCaptureFixture, node_factory: Callable[..., Node], driven: Driven
 ) -> None:
-    """The stop waits for it, as it could command until it has ended."""
+    """The stop waits for it, because it could command until it has ended."""
     node = node_factory("wheels")
     go_on = asyncio.Event()
 
@@ -452,7 +452,7 @@ async def test_a_callback_that_does_not_end_is_named(
     assert driven.log == [1, "stop"]
 
 
-# What happens during and after it
+# During and after the stop
 
 
 async def test_an_async_stop_comes_before_later_messages(
@@ -488,7 +488,7 @@ async def test_an_async_stop_comes_before_later_messages(
 async def test_an_error_of_the_stop_ends_the_node(
     aionode_context: Context, clock: ManualClock
 ) -> None:
-    """As that of the callback: the robot is in an unknown state."""
+    """Like that of the callback: the robot is in an unknown state."""
 
     def stop() -> None:
         raise ZeroDivisionError("no brakes")
@@ -506,7 +506,7 @@ async def test_an_error_of_the_stop_ends_the_node(
 async def test_errors_of_the_stop_follow_the_policy(
     wheels: Node, teleop: Node, clock: ManualClock
 ) -> None:
-    """Which counts them, and its calls are measured as all are."""
+    """The policy counts them, and its calls are measured like others."""
     errors: list[Exception] = []
 
     def stop() -> None:
@@ -561,7 +561,7 @@ async def test_a_destroyed_subscription_is_never_silent(
 async def test_messages_of_before_the_start_are_as_new_as_the_node(
     aionode_context: Context, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """A node that does not run could not have handled them: the time begins with it."""
+    """A node that was not running could not have handled them: the time starts with it."""
     node = Node("wheels", context=aionode_context)
     node.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     send(teleop.create_publisher(Int32, "n", 10), 1)
@@ -574,7 +574,7 @@ async def test_messages_of_before_the_start_are_as_new_as_the_node(
         assert driven.log == [1, "stop"]
 
 
-# A reader that stood still
+# A reader that was stalled
 
 
 @pytest.fixture
@@ -588,7 +588,7 @@ async def machine_node(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Node]:
 async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
     machine_node: Node, driven: Driven, another_comes: bool
 ) -> None:
-    """The messages are older than `silence_sec`, and were no commands for now."""
+    """The messages are older than `silence_sec`, and were not commands for now."""
     subscription = machine_node.create_subscription(
         Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.2
     )
@@ -609,7 +609,7 @@ async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
 async def test_a_loop_that_was_busy_for_less_has_missed_nothing(
     wheels: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """What it reads late counts from when it was published."""
+    """What it reads late counts from its publication."""
     subscription = wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     began_ns = clock.now().nanoseconds
 
@@ -652,12 +652,12 @@ class Suspending(ManualClock):
         self.lasting = ManualClock(Time(seconds=1000))
 
     def through_suspend(self) -> ManualClock:
-        """Return the time that goes on."""
+        """Return the time that keeps running."""
         return self.lasting
 
 
 async def test_a_host_that_was_suspended_has_been_silent(driven: Driven) -> None:
-    """Its steady clock has stood still, and the world has not."""
+    """Its steady clock has stood still, but the world has not."""
     clock = Suspending()
     async with local_context(clock=clock) as context, Node("wheels", context=context) as node:
         node.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
@@ -695,7 +695,7 @@ async def test_simulated_time_measures_the_silence(
 async def test_a_message_comes_too_late_after_a_jump_of_simulated_time(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """No time has passed but that of the simulation, and that is what counts."""
+    """Only simulated time has passed, and that is what counts."""
     simulated = ROSClock(time_base=clock)
     simulated.set_ros_time_active(True)
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, clock=simulated)
@@ -711,7 +711,7 @@ async def test_a_message_comes_too_late_after_a_jump_of_simulated_time(
 async def test_a_clock_of_the_machine_is_the_steady_one(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Without a simulation, the node's own clock is good for nothing else."""
+    """Without a simulation, the node's own clock has no other purpose."""
     for one in (wheels.get_clock(), SteadyClock(time_base=clock)):
         wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, clock=one)
     send(teleop.create_publisher(Int32, "n", 10), 1)
@@ -753,7 +753,7 @@ async def test_a_managed_subscription_is_watched_while_active(
 
 @pytest.mark.parametrize("silence_sec", [0, -1, float("nan"), float("inf"), 1e-10, 1e300])
 def test_a_silence_has_a_length(node: Node, silence_sec: float) -> None:
-    """Positive and finite: a watch that never rings, or always, protects nobody."""
+    """Positive and finite: a watch that never fires, or always, protects nobody."""
     with pytest.raises(ValueError, match=r"silence_sec=.*; it must be positive and finite"):
         node.create_subscription(
             Int32, "n", print, on_silence=lambda: None, silence_sec=silence_sec
@@ -773,14 +773,14 @@ def test_a_silence_has_a_length(node: Node, silence_sec: float) -> None:
     ],
 )
 def test_what_makes_no_silence_is_refused(node: Node, arguments: dict[str, Any], text: str) -> None:
-    """Each argument that would have no effect: someone relies on it."""
+    """Any argument without effect is refused, since someone relies on it."""
     given = {"callback": print, "on_silence": lambda: None} | arguments
     with pytest.raises(TypeError, match=text):
         node.create_subscription(Int32, "n", given.pop("callback"), **given)
 
 
 def test_what_is_refused_leaves_nothing_behind(node: Node) -> None:
-    """A subscription that was never made watches no publisher."""
+    """A subscription that was never created watches no publisher."""
     with pytest.raises(ValueError, match="silence_sec"):
         node.create_subscription(Int32, "n", print, on_silence=lambda: None, silence_sec=0)
     assert not node.graph._watchers
@@ -788,6 +788,6 @@ def test_what_is_refused_leaves_nothing_behind(node: Node) -> None:
 
 
 def test_a_stop_takes_no_arguments(node: Node) -> None:
-    """Said when it is given, not when the robot has to stop."""
+    """This is reported when it is given, not when the robot has to stop."""
     with pytest.raises(CallbackSignatureError, match=r"on_silence"):
         node.create_subscription(Int32, "n", print, on_silence=lambda msg: msg)  # type: ignore[misc, arg-type]

@@ -88,7 +88,7 @@ class Seen:
 
 
 class Listener:
-    """Has the callback, which does with each message what its number stands for."""
+    """Has the callback, which treats each message according to its number."""
 
     def __init__(self, scripts: list[str]) -> None:
         self.seen = Seen()
@@ -123,7 +123,7 @@ class Listener:
 
 
 async def take(way: Way, bursts: list[list[str]], qos: QoSProfile | int = 1000) -> Seen:
-    """Return what comes of messages that are brought in bursts.
+    """Return the outcome of messages that are delivered in bursts.
 
     Args:
         way: Their way to the callback.
@@ -184,7 +184,7 @@ def test_all_ways_to_a_callback_agree(bursts: list[list[str]]) -> None:
 @given(bursts_of("nothing", "value", "raises", "stops"))
 @settings(deadline=None)
 def test_a_thread_agrees_but_for_what_threads_cannot_raise(bursts: list[list[str]]) -> None:
-    """A future takes no StopIteration, so that there it is a RuntimeError."""
+    """A future accepts no StopIteration, so there it is a RuntimeError."""
 
     async def run() -> tuple[Seen, Seen]:
         thread = Way(options={"offload": True})

@@ -24,7 +24,7 @@ EventT = TypeVar("EventT")
 
 
 class Pair(NamedTuple):
-    """Two nodes that hear each other over one transport, and their time.
+    """Two nodes connected over one transport, and their time.
 
     Attributes:
         talker: The node of publishers.
@@ -46,7 +46,7 @@ class Pair(NamedTuple):
         publisher_events: Any = None,
         subscription_events: Any = None,
     ) -> tuple[Publisher[Int32], Subscription[Int32]]:
-        """Return a publisher and a subscription that know each other."""
+        """Return a publisher and a subscription that have found each other."""
         subscription = self.listener.create_subscription(
             Int32, "n", None, requested, event_callbacks=subscription_events
         )
@@ -98,7 +98,7 @@ async def pair(
 
 
 async def next_of(stream: EventStream[Any], kind: type[EventT]) -> EventT:
-    """Wait for the next event of a kind; others are passed over."""
+    """Wait for the next event of a kind, ignoring others."""
     async with asyncio.timeout(10):
         async for event in stream:
             if isinstance(event, kind):

@@ -49,7 +49,7 @@ async def test_a_subscription_learns_of_each_period_without_a_message(pair: Pair
 
 
 async def test_messages_in_time_miss_nothing(pair: Pair) -> None:
-    """Each message starts the period anew."""
+    """Each message restarts the period."""
     publisher, subscription = await pair.joined(DEADLINE, DEADLINE)
     for number in range(5):
         await pair.send(publisher, subscription, number)
@@ -59,7 +59,7 @@ async def test_messages_in_time_miss_nothing(pair: Pair) -> None:
 
 
 async def test_the_periods_of_a_stall_are_all_counted(pair: Pair) -> None:
-    """DDS counts periods, and not how often the program had time to look."""
+    """DDS counts periods, rather than how often the program had time to check."""
     publisher, subscription = await pair.joined(DEADLINE, DEADLINE)
     await pair.send(publisher, subscription)
     await pair.clock.jump(2.2)
@@ -132,7 +132,7 @@ async def test_a_message_before_the_node_runs_starts_the_time() -> None:
 
 
 async def test_nothing_is_missed_after_the_end_of_the_node(pair: Pair) -> None:
-    """A destroyed publisher has no deadline any more, nor has a destroyed subscription."""
+    """A destroyed publisher or subscription has no deadline any more."""
     missed: list[object] = []
     publisher, subscription = await pair.joined(
         DEADLINE,

@@ -1,4 +1,4 @@
-"""Events of matches, of what does not fit, of lost messages; and their two forms."""
+"""Events of matches, incompatibilities and lost messages, and their two forms."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 async def test_matches_are_counted_at_both_ends(pair: Pair) -> None:
-    """And what goes is counted down."""
+    """Removals are counted as well."""
     publisher, subscription = await pair.joined(10, 10)
     assert await next_of(publisher.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
     assert await next_of(subscription.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
@@ -43,7 +43,7 @@ async def test_matches_are_counted_at_both_ends(pair: Pair) -> None:
 
 
 async def test_an_incompatible_profile_is_an_event_at_both_ends(pair: Pair) -> None:
-    """Over Zenoh messages pass all the same, as with rmw_zenoh, so there it is a match as well."""
+    """Over Zenoh messages pass nevertheless, as with rmw_zenoh, so there it is a match as well."""
     publisher, subscription = await pair.joined_by_name(BEST_EFFORT, 10)
     for stream in (publisher.events, subscription.events):
         event = await next_of(stream, QoSRequestedIncompatibleQoSInfo)
@@ -53,7 +53,7 @@ async def test_an_incompatible_profile_is_an_event_at_both_ends(pair: Pair) -> N
 
 
 async def test_an_incompatible_type_is_an_event_at_both_ends(pair: Pair) -> None:
-    """Neither hears the other."""
+    """Neither receives from the other."""
     publisher = pair.talker.create_publisher(Int32, "n", 10)
     subscription = pair.listener.create_subscription(String, "n")
     assert await next_of(publisher.events, IncompatibleTypeInfo) == IncompatibleTypeInfo(1, 1)
@@ -85,7 +85,7 @@ async def test_a_late_stream_begins_with_what_has_happened(node: Node) -> None:
 
 
 async def test_streams_end_with_their_endpoint(node: Node) -> None:
-    """What has happened before can still be read; one that is made later has nothing."""
+    """Earlier events can still be read; a stream created later is empty."""
     publisher = node.create_publisher(Int32, "n", 10)
     subscription = node.create_subscription(Int32, "n")
     seen: list[Any] = []
@@ -103,7 +103,7 @@ async def test_streams_end_with_their_endpoint(node: Node) -> None:
 
 
 async def test_a_stream_that_is_not_read_keeps_the_newest_and_counts_the_others(node: Node) -> None:
-    """It is bounded, as everything that waits."""
+    """It is bounded, like everything that waits."""
     publisher = node.create_publisher(Int32, "n", 10)
     events = publisher.events
     for _ in range(EVENTS_KEPT):
@@ -125,7 +125,7 @@ async def test_cancelling_a_wait_loses_no_event(node: Node) -> None:
 
 
 async def test_an_exception_in_an_event_callback_ends_the_node() -> None:
-    """As in the callback of a subscription: no caller waits for an answer."""
+    """Like in a subscription's callback: no caller waits for an answer."""
 
     def fail(event: MatchedInfo) -> None:
         raise ValueError(f"{event.current_count} is too many")
@@ -186,7 +186,7 @@ async def test_the_default_for_an_incompatible_profile_is_a_warning(
 
 
 async def test_events_of_a_publisher_without_policies_cost_no_message_anything(node: Node) -> None:
-    """Nothing stands in the way of messages that no policy needs."""
+    """Messages that no policy concerns are not delayed."""
     publisher = node.create_publisher(Int32, "n", 10)
     subscription = node.create_subscription(Int32, "n")
     assert len(writers_of(publisher)) == len(node.context.transports)
@@ -196,7 +196,7 @@ async def test_events_of_a_publisher_without_policies_cost_no_message_anything(n
 async def test_a_message_that_does_not_fit_is_no_sign_of_life(
     node: Node, manual_clock: ManualClock
 ) -> None:
-    """It was not published, whether anything listens or not."""
+    """It was not published, whether anybody listens or not."""
     profile = QoSProfile(depth=1, deadline=Duration(seconds=1))
     publisher = node.create_publisher(Int32, "n", profile)
     with pytest.raises(ValueError, match="data"):

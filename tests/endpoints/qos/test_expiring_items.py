@@ -1,4 +1,4 @@
-"""The deque that drops what has expired, against the simplest model of one."""
+"""The deque that drops expired items, compared with the simplest model of one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STEPS = st.lists(
 
 @given(STEPS, st.integers(0, 3))
 def test_it_holds_what_has_not_expired_in_order(steps: list[tuple[str, int]], queued: int) -> None:
-    """And counts each item that it dropped once."""
+    """And counts each dropped item once."""
     now_ns = 0
     expired = 0
     number = queued

@@ -1,4 +1,4 @@
-"""Policies over a transport that delays and loses what it carries."""
+"""Policies over a transport that delays and loses messages."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ SECOND = Duration(seconds=1)
 
 @pytest.fixture
 def clock() -> ManualClock:
-    """The time, which tests step."""
+    """The time, stepped by the tests."""
     return ManualClock(Time(seconds=1000))
 
 
 @pytest.fixture
 def network(clock: ManualClock) -> FaultyTransport:
-    """What carries the messages; a test sets its faults."""
+    """The transport of the messages; a test sets its faults."""
     return FaultyTransport(LocalTransport(), clock=clock)
 
 
 @pytest.fixture
 async def node(clock: ManualClock, network: FaultyTransport) -> AsyncIterator[Node]:
-    """A node whose messages to itself take that way."""
+    """A node whose messages to itself use that transport."""
     context = Context(transport=network, clock=clock)
     async with quiet_node("node", context) as node:
         yield node
@@ -99,7 +99,7 @@ async def test_missing_messages_are_reported(
 async def test_lost_assertions_end_the_life_of_a_publisher_for_its_readers(
     node: Node, network: FaultyTransport, clock: ManualClock
 ) -> None:
-    """It does not know of it: it asserted its liveliness in time."""
+    """The publisher does not know: it asserted its liveliness in time."""
     profile = QoSProfile(
         depth=10,
         liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,

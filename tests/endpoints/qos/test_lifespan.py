@@ -29,7 +29,7 @@ KEPT_LIMITED = KEPT.replace(lifespan=LIFESPAN)
 
 
 async def until_queued(subscription: Subscription[Any], count: int = 1) -> None:
-    """Wait until so many messages are in the queue of a subscription."""
+    """Wait until a number of messages are in the queue of a subscription."""
     while len(reader_of(subscription)) < count:
         await checkpoint()
 
@@ -61,7 +61,7 @@ async def test_an_unread_message_expires_in_the_queue(
 async def test_a_late_subscription_gets_no_expired_message(
     pair: Pair, offered: QoSProfile, requested: QoSProfile
 ) -> None:
-    """The history of a transient local publisher is where messages wait longest."""
+    """Messages wait longest in the history of a transient local publisher."""
     publisher = pair.talker.create_publisher(Int32, "n", offered)
     publisher.publish(Int32(data=1))
     await pair.clock.advance(1.5)
@@ -73,7 +73,7 @@ async def test_a_late_subscription_gets_no_expired_message(
 
 
 async def test_a_callback_that_is_busy_gets_no_expired_message(pair: Pair) -> None:
-    """What waits behind a callback waits in the queue, which had no limit when it began."""
+    """Messages behind a running callback wait in the queue, which had no limit at first."""
     got: list[int] = []
     busy = asyncio.Event()
 
@@ -142,7 +142,7 @@ async def test_a_stamp_from_the_future_counts_as_now(pair: Pair) -> None:
 async def test_what_waits_for_a_new_process_expires_too(
     pair: Pair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its history must not come before the tokens, which say how long it is valid."""
+    """Its history must not arrive before the tokens, which say how long it is valid."""
     known: list[int] = []
     declare = ZenohReader.declare_data
 

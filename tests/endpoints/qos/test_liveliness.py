@@ -31,7 +31,7 @@ AUTOMATIC = MANUAL.replace(liveliness=LivelinessPolicy.AUTOMATIC)
 
 @pytest.fixture
 def asserted(monkeypatch: pytest.MonkeyPatch) -> asyncio.Queue[None]:
-    """Get an item with each assertion that a subscription takes."""
+    """Return a list that grows with each assertion that a subscription receives."""
     return returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
 
 
@@ -98,7 +98,7 @@ async def test_the_lease_of_the_subscription_decides_what_it_hears(pair: Pair) -
 async def test_automatic_liveliness_needs_no_message(
     pair: Pair, asserted: asyncio.Queue[None]
 ) -> None:
-    """The node's event loop asserts it, for as long as the node runs."""
+    """The node's event loop asserts it while the node runs."""
     publisher, subscription = await pair.joined(AUTOMATIC, AUTOMATIC)
     changed = subscription.events
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
@@ -174,7 +174,7 @@ async def test_a_destroyed_publisher_asserts_nothing(pair: Pair) -> None:
 
 
 async def test_a_message_that_does_not_pass_the_filter_is_a_sign_of_life(pair: Pair) -> None:
-    """The publisher sends it for that reason, though it could leave it out."""
+    """The publisher sends it for that reason, though it could omit it."""
     publisher, subscription = await pair.joined(MANUAL, MANUAL)
     changed = subscription.events
     await pair.send(publisher, subscription)

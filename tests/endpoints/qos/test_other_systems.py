@@ -1,4 +1,4 @@
-"""Policies kept towards peers that know nothing of them, as nodes of ROS 2 over rmw_zenoh."""
+"""Policies towards peers that know nothing of them, such as ROS 2 nodes over rmw_zenoh."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ PLAIN = QoSProfile(depth=10)
 
 
 class Numbers:
-    """The numbers that a subscriber with history has got."""
+    """The numbers that a subscriber with history has received."""
 
     def __init__(self, session: zenoh.Session, key: str) -> None:
         self._collector = Collector()
@@ -73,7 +73,7 @@ class Numbers:
 
 
 class RosNode:
-    """A ROS 2 node as rmw_zenoh shows it: tokens, and samples with attachments."""
+    """A ROS 2 node as seen through rmw_zenoh: tokens, and samples with attachments."""
 
     def __init__(self, session: zenoh.Session, clock: ManualClock) -> None:
         self._session = session
@@ -102,7 +102,7 @@ class RosNode:
         self._session.put(key, payload)
 
     def subscribe_late(self) -> Numbers:
-        """Subscribe with history, as rmw_zenoh does for transient local."""
+        """Subscribe with history, like rmw_zenoh for transient local."""
         key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
         return Numbers(self._session, key)
 
@@ -112,7 +112,7 @@ class RosNode:
         return list(self._session.get(f"{key}/@adv/**?_anyke", timeout=5.0))
 
     def withdraw(self) -> None:
-        """Undeclare the token, as the end of the process does."""
+        """Undeclare the token, as at the end of the process."""
         self._token.undeclare()
 
     async def publish(self, number: int, *, age_s: float = 0, skip: int = 0) -> None:
@@ -195,7 +195,7 @@ async def test_a_publisher_keeps_its_deadline_towards_ros_2(
 async def test_an_old_sample_is_not_delivered(
     node: Node, ros_node: RosNode, offered: QoSProfile, requested: QoSProfile
 ) -> None:
-    """Its stamp says how old it is, and the token of its publisher how old it may be."""
+    """Its stamp tells its age, and the token of its publisher the limit."""
     subscription = node.create_subscription(Int32, "n", None, requested)
     ros_node.announce(EndpointKind.PUBLISHER, offered)
     await next_of(subscription.events, MatchedInfo)
@@ -287,7 +287,7 @@ async def test_a_malformed_assertion_is_counted_and_renews_nothing(
     while not malformed.total():
         ros_node.put(side_key(key, Side.PUBLISHERS, "alive"), b"no gid")
         await checkpoint()
-    await clock.advance(5)  # whoever has asserted once has to go on
+    await clock.advance(5)  # whoever has asserted once has to continue
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
 
 
@@ -338,7 +338,7 @@ async def test_what_does_not_fit_is_an_event(node: Node, ros_node: RosNode) -> N
 
 
 async def test_another_type_is_an_event(node: Node, ros_node: RosNode) -> None:
-    """Its key is another, so nothing is heard."""
+    """It uses another key, so nothing arrives."""
     publisher = node.create_publisher(Int32, "n", 10)
     ros_node.announce(EndpointKind.SUBSCRIPTION, PLAIN, String)
     assert await next_of(publisher.events, IncompatibleTypeInfo) == IncompatibleTypeInfo(1, 1)

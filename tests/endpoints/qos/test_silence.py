@@ -38,7 +38,7 @@ class Driven:
 
 
 async def test_a_topic_falls_silent(pair: Pair) -> None:
-    """And speaks again."""
+    """And resumes."""
     driven = Driven(pair, 0.3)
     publisher = pair.talker.create_publisher(Int32, "n", 10)
     await pair.know_each_other(publisher, driven.subscription)
@@ -54,7 +54,7 @@ async def test_a_topic_falls_silent(pair: Pair) -> None:
 
 
 async def test_the_last_publisher_is_destroyed(pair: Pair) -> None:
-    """That ends all commands at once; time does not pass here."""
+    """That ends all commands at once; no time passes here."""
     driven = Driven(pair, 60)
     publisher = pair.talker.create_publisher(Int32, "n", 10)
     await pair.know_each_other(publisher, driven.subscription)

@@ -21,7 +21,7 @@ from aionode.launch import Plan
 ORACLE = Path(__file__).with_name("oracle.py")
 
 TEMPORARY = re.compile(rf"({re.escape(tempfile.gettempdir())}/\w*?)[a-z0-9_]{{8}}\b")
-"""A path that a launch file has made with `tempfile`; its end is another one each time."""
+"""A path created by a launch file with `tempfile`; its suffix differs each time."""
 
 
 def real(path: str, arguments: list[str]) -> Any:

@@ -1,7 +1,7 @@
 """What ROS 2's launch would start for a launch file, as JSON; it starts nothing.
 
-Run where the real `launch` and `launch_ros` are: ``python oracle.py FILE name:=value``. Timers and
-event handlers are followed at once, in the order in which they stand in the file.
+Run it where the real `launch` and `launch_ros` are installed: ``python oracle.py FILE
+name:=value``. Timers and event handlers are followed at once, in their order in the file.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from launch.launch_description_sources import AnyLaunchDescriptionSource  # noqa
 if not hasattr(launch.substitutions, "PathSubstitution"):  # launch before 3.8
 
     class PathSubstitution(launch.substitutions.PathJoinSubstitution):
-        """A path, to which parts are added with ``/``."""
+        """A path that ``/`` extends."""
 
         def __init__(self, path: Any) -> None:
             super().__init__([path])
@@ -47,7 +47,7 @@ RECORDS: list[dict[str, Any]] = []
 
 
 class NoNode:
-    """Stands for launch's own node, which nothing needs here."""
+    """Stands in for launch's own node, which is not needed here."""
 
     def __getattr__(self, name: str) -> Any:
         return lambda *_args, **_options: self
@@ -75,7 +75,7 @@ def note_process(action: Any, context: Any) -> None:
 
 
 def plain(value: Any) -> Any:
-    """Return a value with lists in the place of tuples."""
+    """Return a value with lists in place of tuples."""
     if isinstance(value, dict):
         return {str(name): plain(inner) for name, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -84,7 +84,7 @@ def plain(value: Any) -> Any:
 
 
 def note_components(action: Any, context: Any) -> None:
-    """Record what a container would get."""
+    """Record what a container would load."""
     target = action._LoadComposableNodes__target_container
     if isinstance(target, launch_ros.actions.ComposableNodeContainer):
         name = target.node_name
@@ -119,7 +119,7 @@ def value_of(value: Any) -> Any:
 
 
 def visit(entity: Any, context: Any) -> None:
-    """Follow an entity, and what it consists of, to the end."""
+    """Follow an entity, and everything that it consists of, to the end."""
     condition = getattr(entity, "condition", None)
     if condition is not None and not callable(condition) and not condition.evaluate(context):
         return
