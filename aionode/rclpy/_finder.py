@@ -21,7 +21,12 @@ FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
 """The folder with the Python packages of ROS that aionode provides."""
 SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
 """Their names."""
-YIELDING: Final = ("launch_param_builder", "moveit_configs_utils", "nav2_common")
+YIELDING: Final = (
+    "launch_param_builder",
+    "moveit_configs_utils",
+    "nav2_common",
+    "nav2_simple_commander",
+)
 """The packages that yield to one with the same name in the workspace or installed."""
 A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")
 """The packages that have one module per class in ROS, but fewer here."""
