@@ -12,7 +12,7 @@ REPORT_NS: Final = 60_000_000_000
 """Minimum time between two reports, in nanoseconds."""
 
 MUCH_NS: Final = REPORT_NS // 100
-"""Waits that are reported at any load, in nanoseconds: a process may be bound to a busy core."""
+"""From which sum of waits on there is a report, in nanoseconds: fewer are counted only."""
 
 logger = logging.getLogger("aionode.load")
 
@@ -21,7 +21,7 @@ class ProcessorWaits:
     """Counts callbacks that took long because their thread was ready to run and had no processor.
 
     Nothing in the program mends that, so the log has one line a minute for the whole process, and
-    none while the load is low and the waits are short.
+    none before the waits are a hundredth of a minute in sum. `top` and `doctor` show all of them.
 
     Attributes:
         count: How many callbacks have waited so for longer than their budget.
@@ -50,10 +50,10 @@ class ProcessorWaits:
             return
         count, total_ns = self._reported
         since_ns = self.total_ns - total_ns
+        if since_ns < MUCH_NS:
+            return
         load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
         cores = os.cpu_count() or 1
-        if load <= cores and since_ns < MUCH_NS:
-            return
         self._reported, self._reported_ns = (self.count, self.total_ns), now_ns
         more = ", which is more than these can do at a time" if load > cores else ""
         logger.warning(

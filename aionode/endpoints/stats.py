@@ -233,6 +233,8 @@ class CallbackStats:
 
     def _record_noted(self) -> None:
         """Record the buffered calls."""
+        if not (self._took_ns or self._inline_ns or self._waited_ns):
+            return
         queue_wait, run_time, blocking = self._recorded()
         if self._inline_ns:
             queue_wait._merge({_NO_WAIT: len(self._inline_ns)}, 0)

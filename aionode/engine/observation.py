@@ -12,7 +12,7 @@ import socket
 import sys
 from functools import cache
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
@@ -128,13 +128,14 @@ class ProcessReport(msgspec.Struct):
 
 
 @cache
-def unchanging() -> dict[str, str]:
+def unchanging() -> dict[str, Any]:
     """Return what stays the same while the process runs; looking it up takes a while."""
     return {
         "host": socket.gethostname(),
         "program": " ".join(sys.argv)[:MOST_TEXT] or sys.executable,
         "version": version("aionode"),
         "python": platform.python_version(),
+        "cores": os.cpu_count() or 1,
     }
 
 
@@ -149,7 +150,6 @@ def process_report(
         cpu_ns=process_ns(),
         memory_bytes=memory_bytes(),
         load=os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0,
-        cores=os.cpu_count() or 1,
         processor_waits=WAITS.count,
         processor_waited_ns=WAITS.total_ns,
         dropped=dict(dropped),

@@ -49,6 +49,13 @@ def kind_of(cls: Any) -> str | None:
     return next((KINDS[base.__name__] for base in cls.__mro__ if base.__name__ in KINDS), None)
 
 
+@cache
+def named_in(cls: Any, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return which of some names the stats of a class have."""
+    have = {*dir(cls), *(name for base in cls.__mro__ for name in getattr(base, "__slots__", ()))}
+    return tuple(name for name in names if name in have)
+
+
 def entity_report(entity: Any) -> EntityReport | None:
     """Return the counts of an entity; None for infrastructure, and for what counts nothing."""
     cls: Any = type(entity)
@@ -63,16 +70,18 @@ def entity_report(entity: Any) -> EntityReport | None:
     elif hasattr(entity, "action_type"):
         name, type_name = entity.action_name, entity.action_type.__ros_type__
     runner = getattr(entity, "_runner", None) or getattr(entity, "_execute", None)
-    stats = entity.stats
+    stats: Any = entity.stats
+    counted: Any = type(stats)
     return EntityReport(
         kind,
         name,
         type_name,
         "" if runner is None else callback_name(runner.callback),
-        {count: getattr(stats, count) for count in COUNTS if hasattr(stats, count)},
+        {count: getattr(stats, count) for count in named_in(counted, COUNTS)},
         {
-            duration: DurationReport(measured.buckets, measured.max_ns)
-            for duration in DURATIONS
-            if (measured := getattr(stats, duration, None)) is not None
+            duration: DurationReport(
+                (measured := getattr(stats, duration)).buckets, measured.max_ns
+            )
+            for duration in named_in(counted, DURATIONS)
         },
     )

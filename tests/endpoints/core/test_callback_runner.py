@@ -326,7 +326,7 @@ def processor(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 async def test_a_wait_for_a_processor_is_counted_and_not_reported_as_blocking(
     context: Context, caplog: pytest.LogCaptureFixture, processor: SimpleNamespace, kind: str
 ) -> None:
-    """Work moved off the loop would wait as well: one line a minute says so for the process."""
+    """Work moved off the loop would wait as well; so few milliseconds are worth no line."""
 
     def starved(msg: Int32) -> None:
         threading.Event().wait(0.03)
@@ -343,8 +343,7 @@ async def test_a_wait_for_a_processor_is_counted_and_not_reported_as_blocking(
     assert "blocked" not in caplog.text
     assert processor.waits.count == 3
     assert processor.waits.total_ns >= 90e6
-    (line,) = [text for text in caplog.messages if "wait for a processor" in text]
-    assert re.search(r"wait for a processor: 1 since .*; the load is \d+\.\d on \d+ cores", line)
+    assert "wait for a processor" not in caplog.text
 
 
 async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
@@ -374,22 +373,22 @@ def high_load(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("high_load")
 def test_waits_are_reported_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
-    """Including everything since the last line."""
+    """Including everything since the last line, and not before it is a hundredth of a minute."""
     waits = ProcessorWaits()
 
-    for second in range(61):
+    for second in range(90):
         waits.note(20_000_000, second * 1_000_000_000)
 
     first, second_line = [text for text in caplog.messages if "wait for a processor" in text]
-    assert ": 1 since the last such line, 20 ms in all" in first
+    assert ": 30 since the last such line, 600 ms in all; the load is 1000.0 on" in first
     assert ": 60 since the last such line, 1200 ms in all" in second_line
-    assert (waits.count, waits.longest_ns) == (61, 20_000_000)
+    assert (waits.count, waits.longest_ns) == (90, 20_000_000)
 
 
-def test_short_waits_are_not_reported_while_the_load_is_low(
+def test_short_waits_are_not_reported(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is wrong then; long ones are, as in a process that is bound to a busy core."""
+    """Many or long ones are, also at a low load: a process may be bound to a busy core."""
     monkeypatch.setattr(os, "getloadavg", lambda: (0.5, 0.0, 0.0))
     waits = ProcessorWaits()
 

@@ -23,7 +23,7 @@ __all__ = ["top", "top_command"]
 @click.command("top")
 @click.option("--once", is_flag=True, help="Print one look as text, and end.")
 @click.option(
-    "--interval", type=positive, default=1.0, show_default=True, help="Time between looks, in s."
+    "--interval", type=positive, default=2.0, show_default=True, help="Time between looks, in s."
 )
 @json_option
 @ros2_options
@@ -40,7 +40,7 @@ def top_command(json: bool, once: bool, interval: float) -> None:
     )
 
 
-async def top(node: Node, *, output: Output, once: bool = False, interval: float = 1.0) -> None:
+async def top(node: Node, *, output: Output, once: bool = False, interval: float = 2.0) -> None:
     """Show what all processes do, until Ctrl-C.
 
     Args:

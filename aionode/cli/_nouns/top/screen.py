@@ -66,7 +66,7 @@ class TopApp(App[None]):
         *[(str(number), f"tab('{name}')", name) for number, name in enumerate((*TABLES, "log"), 1)],
     ]
 
-    def __init__(self, node: Node, interval: float = 1.0) -> None:
+    def __init__(self, node: Node, interval: float = 2.0) -> None:
         super().__init__()
         self._node = node
         self._interval = interval
