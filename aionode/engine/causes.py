@@ -16,7 +16,7 @@ import asyncio
 import weakref
 from collections import deque
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol, TypeAlias
 
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
@@ -133,6 +133,8 @@ class Run:
             self.ended_ns = now_ns
             self.log.runs.append(self)
             self.log.runs_counted += 1
+            for listener in self.log.listeners:
+                listener.note_end(self)
 
     def share(self, run: Run, task: asyncio.Task[Any] | None) -> None:
         """Add a cause for what this run and its tasks send: once `task` has ended, or now."""
@@ -231,6 +233,16 @@ def note_end(now_ns: int) -> None:
         run.end(now_ns)
 
 
+class Listener(Protocol):
+    """Is told of what a log keeps."""
+
+    def note_sent(self, sent: Sent) -> None:
+        """Take something that was sent."""
+
+    def note_end(self, run: Run) -> None:
+        """Take a callback that has ended."""
+
+
 class CauseLog:
     """What the nodes of one context have sent, and why.
 
@@ -238,6 +250,7 @@ class CauseLog:
 
     Attributes:
         sent: What was sent last, the oldest first.
+        listeners: Are told of each, at once.
         sent_counted: How many things were ever sent.
         runs: The callbacks that ended last, the first to end first.
         runs_counted: How many have ever ended.
@@ -246,6 +259,7 @@ class CauseLog:
     def __init__(self) -> None:
         self.sent: deque[Sent] = deque(maxlen=MOST_KEPT)
         self.runs: deque[Run] = deque(maxlen=MOST_KEPT)
+        self.listeners: list[Listener] = []
         self.sent_counted = 0
         self.runs_counted = 0
         self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MOST_SENDERS)
@@ -266,6 +280,8 @@ class CauseLog:
         sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), causes, goal)
         self.sent.append(sent)
         self.sent_counted += 1
+        for listener in self.listeners:
+            listener.note_sent(sent)
         self._last.put((kind, party.gid, party.name), sent)
 
     def begin(self, party: Party, kind: Kind, gid: bytes, sequence: int, entered_ns: int) -> Run:
