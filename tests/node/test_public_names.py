@@ -48,7 +48,7 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-add_reporter arguments as_default default domain_id dropped drops graph network new_uuid ok
+add_reporter arguments as_default causes default domain_id dropped drops graph network new_uuid ok
 participant report ros_distro seed shutdown time_base transports
 """
 TRANSPORT = """

@@ -6,10 +6,11 @@ take them like items of other waitables.
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
 from enum import IntEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
+
+from msgspec import structs
 
 from aionode._process.recent import Recent
 from aionode.clock import SilenceAlarm
@@ -149,7 +150,7 @@ class Watch:
         added = {
             name: getattr(self.status, name) + getattr(event, name) for name in changes_in(event)
         }
-        self.status = replace(event, **added)
+        self.status = structs.replace(event, **added)
         self.changed = True
         self._notify()
 
@@ -160,7 +161,7 @@ class Watch:
     def take(self) -> Any:
         """Return the status, and reset its changes."""
         status = self.status
-        self.status = replace(status, **dict.fromkeys(changes_in(status), 0))
+        self.status = structs.replace(status, **dict.fromkeys(changes_in(status), 0))
         self.changed = False
         return status
 
@@ -184,7 +185,7 @@ class Watch:
 
 def changes_in(status: Any) -> list[str]:
     """Return the names of the status fields that hold changes."""
-    return [field.name for field in fields(status) if field.name.endswith("_change")]
+    return [name for name in status.__struct_fields__ if name.endswith("_change")]
 
 
 class MatchedWatch(Watch):
@@ -216,7 +217,9 @@ class IncompatibleQoSWatch(MatchedWatch):
     def take(self) -> Any:
         """Return the status, with the kind of policy as ROS 2 prints it."""
         status = super().take()
-        return replace(status, last_policy_kind=rmw_qos_policy_kind_t(status.last_policy_kind))
+        return structs.replace(
+            status, last_policy_kind=rmw_qos_policy_kind_t(status.last_policy_kind)
+        )
 
 
 class IncompatibleTypeWatch(MatchedWatch):
