@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from aionode.errors import brief
-from aionode.interfaces.rcl_interfaces import msg as rcl_msg
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.parameter._value import Parameter, expect
 
@@ -21,15 +20,15 @@ class ParameterCallbacks:
     """A node's callbacks for parameter changes; the newest of each kind runs first.
 
     Attributes:
-        messages: The message classes by name; on-set callbacks return its `SetParametersResult`.
+        pre: Those that run before a change is checked.
+        on: Those that check it.
+        post: Those that run after it.
     """
 
-    messages: Any = rcl_msg
-
     def __init__(self) -> None:
-        self._pre: list[PreSetCallback] = []
-        self._on: list[OnSetCallback] = []
-        self._post: list[PostSetCallback] = []
+        self.pre: list[PreSetCallback] = []
+        self.on: list[OnSetCallback] = []
+        self.post: list[PostSetCallback] = []
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Add a callback that runs before a change is checked, and returns the parameters to set.
@@ -37,7 +36,7 @@ class ParameterCallbacks:
         Raises:
             TypeError: it is not callable.
         """
-        self._pre.insert(0, expect_callable(callback))
+        self.pre.insert(0, expect_callable(callback))
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Add a callback that checks changes; the first one that rejects a change decides.
@@ -45,7 +44,7 @@ class ParameterCallbacks:
         Raises:
             TypeError: it is not callable.
         """
-        self._on.insert(0, expect_callable(callback))
+        self.on.insert(0, expect_callable(callback))
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Add a callback that runs after each change.
@@ -53,48 +52,35 @@ class ParameterCallbacks:
         Raises:
             TypeError: it is not callable.
         """
-        self._post.insert(0, expect_callable(callback))
+        self.post.insert(0, expect_callable(callback))
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._pre.remove(callback)
+        self.pre.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._on.remove(callback)
+        self.on.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._post.remove(callback)
+        self.post.remove(callback)
 
-    def _modified(self, parameters: list[Parameter]) -> list[Parameter]:
+    def modified(self, parameters: list[Parameter]) -> list[Parameter]:
+        """Return the parameters to set after all pre-set callbacks.
+
+        Raises:
+            TypeError: one of them returns no list.
+        """
         # As in rclpy, each callback gets the original list, and the results are concatenated.
-        if not self._pre:
+        if not self.pre:
             return parameters
         result: list[Parameter] = []
-        for callback in self._pre:
+        for callback in self.pre:
             returned = callback(parameters)
             expect(returned, Iterable, f"what the pre-set callback {callback!r} returns")
             result.extend(returned)
         return result
-
-    def _rejection(self, parameters: list[Parameter]) -> SetParametersResult | None:
-        for callback in self._on:
-            result = self._checked_result(callback, callback(parameters))
-            if not result.successful:
-                return result
-        return None
-
-    def _checked_result(self, callback: OnSetCallback, result: Any) -> SetParametersResult:
-        """Return the result of an on-set callback, checked.
-
-        Raises:
-            TypeError: it is not a `SetParametersResult`.
-        """
-        wanted = self.messages.SetParametersResult
-        expect(result, wanted, f"what the on-set callback {callback!r} returns")
-        checked: SetParametersResult = result
-        return checked
 
 
 def expect_callable(callback: Any) -> Any:

@@ -27,6 +27,7 @@ from aionode.errors import (
     ParameterUninitializedException,
     brief,
 )
+from aionode.interfaces.rcl_interfaces import msg as rcl_msg
 from aionode.interfaces.rcl_interfaces.msg import (
     ListParametersResult,
     ParameterDescriptor,
@@ -34,7 +35,7 @@ from aionode.interfaces.rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
-from aionode.parameter._callbacks import ParameterCallbacks
+from aionode.parameter._callbacks import OnSetCallback, ParameterCallbacks
 from aionode.parameter._constraints import descriptor_violation, type_violation
 from aionode.parameter._declaration import (
     first_value,
@@ -57,7 +58,7 @@ EMPTY_LIST = (
 )
 
 
-class ParameterStore(ParameterCallbacks):
+class ParameterStore:
     """The parameters of one node.
 
     An API with its own classes derives from it and sets `parameter_class` and `messages`.
@@ -72,11 +73,13 @@ class ParameterStore(ParameterCallbacks):
         overrides: The overrides, by name.
         asked: Names of the overrides whose parameters have been declared.
         publish: As given; may be replaced.
+        callbacks: The callbacks for changes.
         parameter_class: The class of the parameters.
-        messages: The message classes, by name.
+        messages: The message classes, by name; on-set callbacks return its `SetParametersResult`.
     """
 
     parameter_class: type[Parameter] = Parameter
+    messages: Any = rcl_msg
 
     def __init__(
         self,
@@ -86,8 +89,8 @@ class ParameterStore(ParameterCallbacks):
         allow_undeclared: bool = False,
         publish: Callable[[ParameterEvent], None] | None = None,
     ) -> None:
-        super().__init__()
         self.node_name = node_name
+        self.callbacks = ParameterCallbacks()
         self.overrides = as_overrides(overrides)
         self.asked: set[str] = set()
         self.allow_undeclared = allow_undeclared
@@ -352,10 +355,10 @@ class ParameterStore(ParameterCallbacks):
                 allowed.
             TypeError: One is not a Parameter.
         """
-        parameters = self._modified(list(parameter_list))
+        parameters = self.callbacks.modified(list(parameter_list))
         for parameter in parameters:
             expect(parameter, self.parameter_class, "parameter")
-        if self._pre and not parameters:
+        if self.callbacks.pre and not parameters:
             return self._failure(EMPTY_LIST)
         parameters = self._prepared(parameters, self._descriptors)
         names = [parameter.name for parameter in parameters]
@@ -369,6 +372,25 @@ class ParameterStore(ParameterCallbacks):
         self._store(parameters)
         success: SetParametersResult = self.messages.SetParametersResult(successful=True)
         return success
+
+    def _rejection(self, parameters: list[Parameter]) -> SetParametersResult | None:
+        """Return the first result of an on-set callback that rejects a change, if any."""
+        for callback in self.callbacks.on:
+            result = self._checked_result(callback, callback(parameters))
+            if not result.successful:
+                return result
+        return None
+
+    def _checked_result(self, callback: OnSetCallback, result: Any) -> SetParametersResult:
+        """Return the result of an on-set callback, checked.
+
+        Raises:
+            TypeError: it is not a `SetParametersResult`.
+        """
+        wanted = self.messages.SetParametersResult
+        expect(result, wanted, f"what the on-set callback {callback!r} returns")
+        checked: SetParametersResult = result
+        return checked
 
     def _failure(self, reason: str) -> SetParametersResult:
         """Return the result for a rejected change."""
@@ -435,7 +457,7 @@ class ParameterStore(ParameterCallbacks):
                     deleted_parameters=deleted,
                 )
             )
-        for callback in self._post:
+        for callback in self.callbacks.post:
             callback(parameters)
 
     # Descriptors

@@ -172,24 +172,24 @@ class ParameterMethods:
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Add a callback that runs before a change is checked and returns what to set."""
-        self.__store.add_pre_set_parameters_callback(callback)
+        self.__store.callbacks.add_pre_set_parameters_callback(callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Add a callback that checks changes; the first one that rejects a change decides."""
-        self.__store.add_on_set_parameters_callback(callback)
+        self.__store.callbacks.add_on_set_parameters_callback(callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Add a callback that runs after each change."""
-        self.__store.add_post_set_parameters_callback(callback)
+        self.__store.callbacks.add_post_set_parameters_callback(callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self.__store.remove_pre_set_parameters_callback(callback)
+        self.__store.callbacks.remove_pre_set_parameters_callback(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self.__store.remove_on_set_parameters_callback(callback)
+        self.__store.callbacks.remove_on_set_parameters_callback(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self.__store.remove_post_set_parameters_callback(callback)
+        self.__store.callbacks.remove_post_set_parameters_callback(callback)

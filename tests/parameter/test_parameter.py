@@ -343,7 +343,7 @@ def test_undeclaring_forgets_a_parameter_without_callbacks_or_event() -> None:
     parameters = store()
     parameters.declare_parameter("a", 1)
     parameters.publish = events.append
-    parameters.add_post_set_parameters_callback(lambda _: events.append(ParameterEvent()))
+    parameters.callbacks.add_post_set_parameters_callback(lambda _: events.append(ParameterEvent()))
 
     parameters.undeclare_parameter("a")
 
@@ -604,9 +604,9 @@ def recording(parameters: ParameterStore) -> list[str]:
 
         return callback
 
-    parameters.add_pre_set_parameters_callback(note("pre", list))
-    parameters.add_on_set_parameters_callback(note("on", OK))
-    parameters.add_post_set_parameters_callback(note("post", None))
+    parameters.callbacks.add_pre_set_parameters_callback(note("pre", list))
+    parameters.callbacks.add_on_set_parameters_callback(note("on", OK))
+    parameters.callbacks.add_post_set_parameters_callback(note("post", None))
     parameters.publish = lambda _: log.append("event")
     return log
 
@@ -646,7 +646,7 @@ def test_the_newest_callback_runs_first() -> None:
         return callback
 
     for number in (1, 2):
-        parameters.add_on_set_parameters_callback(numbered(number))
+        parameters.callbacks.add_on_set_parameters_callback(numbered(number))
     set_one(parameters, "a", 2)
 
     assert log == [2, 1]
@@ -658,7 +658,7 @@ def test_a_pre_callback_may_change_and_add_parameters() -> None:
     parameters.declare_parameters("", [("a", 1), ("b", 1)])
     events: list[ParameterEvent] = []
     parameters.publish = events.append
-    parameters.add_pre_set_parameters_callback(
+    parameters.callbacks.add_pre_set_parameters_callback(
         lambda changed: [*changed, Parameter("b", value=9), Parameter("a", value=8)]
     )
 
@@ -672,7 +672,7 @@ def test_a_pre_callback_may_stop_a_change() -> None:
     """By an empty list."""
     parameters = store()
     parameters.declare_parameter("a", 1)
-    parameters.add_pre_set_parameters_callback(lambda _: [])
+    parameters.callbacks.add_pre_set_parameters_callback(lambda _: [])
 
     result = set_one(parameters, "a", 2)
 
@@ -688,7 +688,7 @@ def test_a_rejection_changes_nothing_and_its_reason_is_given() -> None:
     parameters = store()
     parameters.declare_parameter("a", 1)
     log = recording(parameters)
-    parameters.add_on_set_parameters_callback(
+    parameters.callbacks.add_on_set_parameters_callback(
         lambda _: SetParametersResult(successful=False, reason="no")
     )
 
@@ -702,7 +702,7 @@ def test_a_rejection_changes_nothing_and_its_reason_is_given() -> None:
 def test_a_rejection_when_declaring_is_an_error() -> None:
     """And the parameter stays undeclared."""
     parameters = store()
-    parameters.add_on_set_parameters_callback(
+    parameters.callbacks.add_on_set_parameters_callback(
         lambda _: SetParametersResult(successful=False, reason="no")
     )
 
@@ -716,7 +716,7 @@ def test_a_callback_that_returns_nothing_is_a_type_error(kind: str) -> None:
     """A ``return`` was forgotten."""
     parameters = store()
     parameters.declare_parameter("a", 1)
-    getattr(parameters, f"add_{kind}_set_parameters_callback")(lambda _: None)
+    getattr(parameters.callbacks, f"add_{kind}_set_parameters_callback")(lambda _: None)
 
     with pytest.raises(TypeError, match=f"what the {kind}-set callback .* returns must be"):
         set_one(parameters, "a", 2)
@@ -726,7 +726,7 @@ def test_a_callback_that_returns_nothing_is_a_type_error(kind: str) -> None:
 def test_what_cannot_be_called_is_no_callback(kind: str) -> None:
     """The mistake shows where it is made, not at the first change."""
     with pytest.raises(TypeError, match="Callback must be callable, got 3"):
-        getattr(store(), f"add_{kind}_set_parameters_callback")(3)
+        getattr(store().callbacks, f"add_{kind}_set_parameters_callback")(3)
 
 
 def test_a_removed_callback_is_not_called() -> None:
@@ -734,8 +734,8 @@ def test_a_removed_callback_is_not_called() -> None:
     parameters = store()
     log: list[object] = []
     for kind in ("pre", "on", "post"):
-        add = getattr(parameters, f"add_{kind}_set_parameters_callback")
-        remove = getattr(parameters, f"remove_{kind}_set_parameters_callback")
+        add = getattr(parameters.callbacks, f"add_{kind}_set_parameters_callback")
+        remove = getattr(parameters.callbacks, f"remove_{kind}_set_parameters_callback")
         add(log.append)
         remove(log.append)
         with pytest.raises(ValueError, match="not in list"):

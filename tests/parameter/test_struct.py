@@ -17,6 +17,7 @@ from aionode.errors import (
     ParameterUninitializedException,
 )
 from aionode.parameter import Parameter, ParameterStore, declare_struct
+from aionode.parameter.methods import ParameterMethods
 
 
 class Colour(Enum):
@@ -49,12 +50,12 @@ class Driving(msgspec.Struct):
     model: Annotated[str, Meta(extra={"read_only": True})] = "x1"
 
 
-def store(**overrides: object) -> ParameterStore:
+def store(**overrides: object) -> ParameterMethods:
     """Return the parameters of a node with these overrides."""
-    return ParameterStore("/node", overrides=overrides)
+    return ParameterMethods(ParameterStore("/node", overrides=overrides))
 
 
-def set_one(parameters: ParameterStore, name: str, value: object) -> tuple[bool, str]:
+def set_one(parameters: ParameterMethods, name: str, value: object) -> tuple[bool, str]:
     """Set one parameter."""
     result = parameters.set_parameters_atomically([Parameter(name, value=value)])
     return result.successful, result.reason

@@ -9,22 +9,21 @@ import warnings
 from typing import TYPE_CHECKING, Any
 
 from aionode.parameter import ParameterStore
-from aionode.parameter.methods import ParameterMethods
 from rclpy._impl import messages as msg
 from rclpy._impl.typesupport import type_of
 from rclpy.parameter import Parameter
 from rosidl_generator_py import decode, encode
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from rclpy.clock import Clock
     from rclpy.publisher import Publisher
 
-__all__ = ["NodeParameters", "ParameterEvents"]
+__all__ = ["NodeParameterStore", "ParameterEvents"]
 
 
-class Store(ParameterStore):
+class NodeParameterStore(ParameterStore):
     """The parameters of one node, as rclpy keeps them."""
 
     parameter_class = Parameter
@@ -73,25 +72,3 @@ class ParameterEvents:
         event.stamp = self._clock.now().to_msg()
         self._publisher.handle.refuse_after_shutdown("Failed to publish")
         self._publisher.publish(event)
-
-
-class NodeParameters(ParameterMethods):
-    """The part of `Node` with parameters."""
-
-    PARAM_REL_TOL = 1e-6
-    """The relative tolerance for a float at a limit or a step."""
-
-    def _Node__init_parameters(
-        self, full_name: str, overrides: Iterable[Parameter[Any]], *, allow_undeclared: bool
-    ) -> None:
-        """Start without parameters; programs of rclpy read these attributes besides the store."""
-        store = Store(full_name, overrides=overrides, allow_undeclared=allow_undeclared)
-        ParameterMethods.__init__(self, store)
-        self._Node__parameter_store = store
-        self._allow_undeclared_parameters = allow_undeclared
-        self._parameters = store._parameters
-        self._descriptors = store._descriptors
-        self._parameter_overrides = store.overrides
-        self._pre_set_parameters_callbacks = store._pre
-        self._on_set_parameters_callbacks = store._on
-        self._post_set_parameters_callbacks = store._post

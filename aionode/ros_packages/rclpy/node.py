@@ -31,13 +31,17 @@ from rcl_interfaces.msg import (
 from rcl_interfaces.msg import Parameter as ParameterMsg
 
 from aionode import qos as core
+from aionode.engine.graph_queries import GraphQueries
+from aionode.graph import EndpointKind
+from aionode.parameter.methods import ParameterMethods
+from rclpy._endpoint_infos import info_of, service_info_of
+from rclpy._entities import in_use_by_node, wait_until
 from rclpy._impl import messages as msg
 from rclpy._impl.errors import NodeNameNonExistentError
 from rclpy._impl.node import NodeHandle
 from rclpy._impl.services import ClientHandle, ServiceHandle
 from rclpy._impl.topics import PublisherHandle, SubscriptionHandle
-from rclpy._node_graph import NodeGraph
-from rclpy._node_parameters import NodeParameters, ParameterEvents
+from rclpy._parameter_store import NodeParameterStore, ParameterEvents
 from rclpy.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -98,7 +102,9 @@ if TYPE_CHECKING:
 
     from aionode.logging import RcutilsLogger
     from rclpy._impl.destroyable import Arrivals
+    from rclpy.endpoint_info import ServiceEndpointInfo
     from rclpy.subscription_content_filter_options import ContentFilterOptions
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
     from rclpy.waitable import Waitable
 
 __all__ = [
@@ -148,7 +154,7 @@ __all__ = [
 HIDDEN_NODE_PREFIX = "_"
 
 
-class Node(NodeParameters, NodeGraph):
+class Node(ParameterMethods, GraphQueries):
     """A node: a name in the graph, and publishers, subscriptions, services, clients and timers.
 
     Callbacks run in the threads that spin an executor with this node. Everything else works without
@@ -175,6 +181,9 @@ class Node(NodeParameters, NodeGraph):
     """
 
     ParameterInput = Any  # accepted by declare_parameters, for type checkers
+
+    PARAM_REL_TOL = 1e-6
+    """The relative tolerance for a float at a limit or a step."""
 
     def __init__(
         self,
@@ -215,18 +224,31 @@ class Node(NodeParameters, NodeGraph):
                 enable_rosout,
                 as_profile(rosout_qos_profile),
             )
-        NodeGraph.__init__(self, self._Node__handle)
+        GraphQueries.__init__(self, self._Node__handle)
         self._logger = get_logger(self._Node__handle.logger_name())
         self._clock = self._Node__make_clock()
-        self._Node__init_parameters(
+        store = NodeParameterStore(
             self._Node__handle.get_fully_qualified_name(),
-            [*self._Node__handle.get_parameters(Parameter).values(), *(parameter_overrides or ())],
+            overrides=[
+                *self._Node__handle.get_parameters(Parameter).values(),
+                *(parameter_overrides or ()),
+            ],
             allow_undeclared=allow_undeclared_parameters,
         )
+        ParameterMethods.__init__(self, store)
+        self._Node__parameter_store = store
+        # Programs of rclpy read these.
+        self._allow_undeclared_parameters = allow_undeclared_parameters
+        self._parameters = store._parameters
+        self._descriptors = store._descriptors
+        self._parameter_overrides = store.overrides
+        self._pre_set_parameters_callbacks = store.callbacks.pre
+        self._on_set_parameters_callbacks = store.callbacks.on
+        self._post_set_parameters_callbacks = store.callbacks.post
         events = self.create_publisher(
             msg.ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
-        self._Node__parameter_store.publish = ParameterEvents(events, self._clock)
+        store.publish = ParameterEvents(events, self._clock)
         if automatically_declare_parameters_from_overrides:
             self.declare_parameters(
                 "",
@@ -248,6 +270,29 @@ class Node(NodeParameters, NodeGraph):
     def _Node__make_clock(self) -> ROSClock:
         """Return the clock of a new node."""
         return ROSClock()
+
+    @property
+    def handle(self) -> NodeHandle:
+        """The handle."""
+        return self._Node__handle
+
+    @handle.setter
+    def handle(self, value: Any) -> None:
+        raise AttributeError("handle cannot be modified after node creation")
+
+    get_name = in_use_by_node(NodeHandle.get_node_name)
+    get_namespace = in_use_by_node(NodeHandle.get_namespace)
+    get_fully_qualified_name = in_use_by_node(NodeHandle.get_fully_qualified_name)
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a topic, remapped unless `only_expand`."""
+        with self._Node__handle:
+            return self._Node__handle.resolve(topic, only_expand=only_expand)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a service, remapped unless `only_expand`."""
+        with self._Node__handle:
+            return self._Node__handle.resolve(service, only_expand=only_expand, is_service=True)
 
     @property
     def context(self) -> Context:
@@ -576,6 +621,56 @@ class Node(NodeParameters, NodeGraph):
         """Undo `add_waitable`."""
         self._Node__waitables.remove(waitable)
         self._wake_executor()
+
+    # The graph: nobody needs to spin for these queries
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Block the thread until a node with this name exists; return whether it appeared in time.
+
+        Args:
+            fully_qualified_node_name: Namespace and name; the leading slash may be omitted.
+            timeout: The longest wait in seconds.
+        """
+        wanted = "/" + fully_qualified_node_name.removeprefix("/")
+        return wait_until(
+            lambda: wanted in self.get_fully_qualified_node_names(), self._context, timeout
+        )
+
+    def get_publishers_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        """Return the publishers of a topic; with `no_mangle` its name is complete."""
+        return self._Node__infos(EndpointKind.PUBLISHER, topic_name, is_complete=no_mangle)
+
+    def get_subscriptions_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        """Return the subscriptions of a topic; with `no_mangle` its name is complete."""
+        return self._Node__infos(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
+
+    def get_clients_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Return the clients of a service, in Lyrical; with `no_mangle` its name is complete."""
+        return self._Node__services(EndpointKind.CLIENT, service_name, is_complete=no_mangle)
+
+    def get_servers_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Return the servers of a service, in Lyrical; with `no_mangle` its name is complete."""
+        return self._Node__services(EndpointKind.SERVER, service_name, is_complete=no_mangle)
+
+    def _Node__services(
+        self, kind: EndpointKind, service_name: str, *, is_complete: bool
+    ) -> list[ServiceEndpointInfo]:
+        endpoints = self._Node__handle.endpoints(kind, service_name, is_complete=is_complete)
+        return [service_info_of(endpoint) for endpoint in endpoints]
+
+    def _Node__infos(
+        self, kind: EndpointKind, topic_name: str, *, is_complete: bool
+    ) -> list[TopicEndpointInfo]:
+        endpoints = self._Node__handle.endpoints(kind, topic_name, is_complete=is_complete)
+        return [info_of(endpoint) for endpoint in endpoints]
 
     # End
 
