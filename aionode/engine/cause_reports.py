@@ -165,7 +165,7 @@ def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> C
         return report
     entries = log.everything()
     by_key = {key_of(sent): sent for sent in entries}
-    wanted = [by_key[key] for key in question.keys if key in by_key]
+    wanted = [by_key[key] for key in question.keys[:MOST_TOLD] if key in by_key]
     if question.name:
         wanted += latest(entries, question.name)
     report.sent = [reported(sent) for sent in with_causes(wanted, by_key)]

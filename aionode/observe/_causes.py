@@ -184,7 +184,7 @@ class Inquiry:
                 self.found.silent[participant] = nodes
         elif not told:
             self.found.older[participant] = nodes
-        elif (report := decoded(told)) is not None:
+        elif (report := decoded(told)) is not None and report.participant == participant:
             self._keep(report)
         else:
             self.found.unreadable[participant] = nodes

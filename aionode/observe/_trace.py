@@ -114,7 +114,7 @@ class Recording:
                     trace.silent[participant] = self._named(participant)
                     continue
                 report = decoded(data) if data else None
-                if report is None:
+                if report is None or report.participant != participant:
                     trace.older[participant] = self._named(participant)
                 elif not report.is_kept:
                     self._keep(report)
@@ -128,7 +128,7 @@ class Recording:
             told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})
             data = told.get(participant)
             report = decoded(data) if data else None
-            if report is None:
+            if report is None or report.participant != participant:
                 return
             self._keep(report)
             if not report.runs and not report.sent:

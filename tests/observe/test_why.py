@@ -12,6 +12,9 @@ import pytest
 from aionode import ActionClient, ActionServer, Context, Node
 from aionode._process.concurrency import checkpoint
 from aionode.action import CancelResponse
+from aionode.engine.cause_reports import CauseQuestion, answer, encoded
+from aionode.engine.causes import CauseLog
+from aionode.graph import NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Joy
@@ -19,6 +22,7 @@ from aionode.interfaces.std_msgs.msg import Header, Int32
 from aionode.message_filters import Subscriber, TimeSynchronizer, synchronize
 from aionode.observe import Caused, Why, to_chains, why
 from aionode.testing import local_context, settle
+from tests.observe.test_observe import Answering
 from tests.support.peers import contexts_over
 
 CALL = AddTwoInts.Request(a=1, b=2)
@@ -465,4 +469,33 @@ async def test_who_keeps_no_causes_is_named_with_the_remedy() -> None:
     assert to_chains(found).splitlines() == [
         "/out (robot, keeps no causes)",
         "/robot keeps no causes: start it with AIONODE_CAUSES=1, or with Context(causes=True)",
+    ]
+
+
+async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:
+    """Frozen and older processes, and answers in another form or in another's name."""
+    other = encoded(answer(CauseLog(), "d4", CauseQuestion()))
+    transport = Answering({"a1": None, "b2": b"", "c3": b"\xff", "d4": other, "e5": other})
+    async with (
+        Context(transport=transport, causes=True) as context,
+        Node("robot", context=context) as node,
+    ):
+        for participant, name in (
+            ("a1", "frozen"),
+            ("b2", "older"),
+            ("c3", "newer"),
+            ("e5", "lies"),
+        ):
+            node.graph.add_node(NodeInfo(participant, 1, name, "/"))
+        node.create_publisher(Int32, "out", 10).publish(Int32())
+        found = await why(node, "out")
+
+    assert names(found.sent[0]) == ["message /out"]
+    assert (found.silent, found.older) == ({"a1": ["/frozen"]}, {"b2": ["/older"]})
+    assert found.unreadable == {"c3": ["/newer"], "e5": ["/lies"]}
+    assert to_chains(found).splitlines()[1:] == [
+        "/frozen does not answer",
+        "/older is of an older aionode, which keeps no causes",
+        "/newer has answered what this version cannot read",
+        "/lies has answered what this version cannot read",
     ]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from aionode import Context, Node
 from aionode._process.concurrency import checkpoint
+from aionode.engine.cause_reports import CauseQuestion, answer, asked, decoded, encoded
 from aionode.engine.causes import MOST_KEPT, CauseLog, Party
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import String
@@ -184,3 +185,37 @@ def test_what_is_kept_is_bounded() -> None:
     assert len(log.sent) == MOST_KEPT
     assert log.everything()[0].party is rare
     assert len(log.everything()) == MOST_KEPT + 1
+
+
+@given(st.binary(max_size=300))
+def test_what_others_send_is_not_trusted(data: bytes) -> None:
+    """A question that is none asks for nothing, and an answer that is none is refused."""
+    question, report = asked(data), decoded(data)
+
+    assert encoded(answer(CauseLog(), "ab", question))
+    assert report is None or encoded(report)
+
+
+@given(
+    st.builds(
+        CauseQuestion,
+        st.text(max_size=20),
+        st.lists(
+            st.tuples(st.sampled_from(["message", "timer"]), st.binary(), st.integers(0, 2**63)),
+            max_size=3,
+        ),
+        st.none() | st.tuples(st.integers(-9, 2**63), st.integers(-9, 2**63)),
+    )
+)
+def test_any_question_is_answered(question: CauseQuestion) -> None:
+    """Whatever is asked for, it is read as it was sent, and the answer is bounded."""
+    log = CauseLog()
+    party = Party("publisher", "/robot", "/a", b"a")
+    for number in range(5):
+        log.note("message", party, number)
+
+    told = decoded(encoded(answer(log, "ab", asked(encoded(question)))))
+
+    assert asked(encoded(question)) == question
+    assert told is not None
+    assert len(told.sent) <= 5
