@@ -262,7 +262,7 @@ async def watching(
 
     async def watch() -> None:
         await sign()
-        scope.reschedule(0.0)  # in the past: at the next turn of the loop
+        scope.reschedule(0.0)  # in the past: takes effect in the loop's next iteration
 
     error: BaseException | None = None
     async with asyncio.TaskGroup() as tasks:

@@ -528,11 +528,12 @@ class Graph:
 
 
 def is_infrastructure(endpoint: EndpointInfo) -> bool:
-    """Return whether an endpoint is part of how ROS works, and nothing that its author has written.
+    """Return whether an endpoint belongs to ROS itself rather than to its node's author.
 
-    These are hidden names, which those of actions are, ``/rosout`` and ``/parameter_events``, the
-    services of parameters, loggers and type descriptions, questions about the states of managed
-    nodes, and rosapi. What changes the state of a managed node is none: that is what it offers.
+    Infrastructure is: hidden names (such as the topics and services of actions), ``/rosout`` and
+    ``/parameter_events``, the services of parameters, loggers and type descriptions, the services
+    that query the states of managed nodes, and rosapi. The service that changes the state of a
+    managed node is not infrastructure: the node offers it to its users.
     """
     if names.is_hidden(endpoint.name) or endpoint.name in INFRASTRUCTURE_TOPICS:
         return True

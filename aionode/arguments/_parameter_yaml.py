@@ -246,7 +246,7 @@ class Events:
         """Return the next event, which must be of this kind, and advance."""
         event = self.next
         if event is None or type(event).__name__ != f"{kind}Event":
-            self.fail(f"{describe(event)} where a {kind.lower()} should stand")
+            self.fail(f"{describe(event)} where a {kind.lower()} was expected")
         self.depth += {"MappingStart": 1, "MappingEnd": -1}.get(kind, 0)
         if self.depth > DEEPEST:
             self.fail(f"nested deeper than {DEEPEST}")
@@ -321,7 +321,7 @@ def node_name(events: Events, parts: tuple[str, ...]) -> str:
 def read_parameters(events: Events, prefix: str) -> Iterator[tuple[str, ParameterValueType]]:
     """Read a mapping of parameters, joining nested names with dots."""
     if not events.at("MappingStart"):
-        events.fail(f"{describe(events.next)} where parameters should stand, each 'name: value'")
+        events.fail(f"{describe(events.next)} where parameters were expected, each 'name: value'")
     events.take("MappingStart")
     while not events.at("MappingEnd"):
         name = prefix + read_key(events)
@@ -340,7 +340,7 @@ def read_value(events: Events) -> ParameterValueType:
     values: list[Any] = []
     while not events.at("SequenceEnd"):
         if not events.at("Scalar"):
-            events.fail(f"{describe(events.next)} in a sequence; only scalars may stand there")
+            events.fail(f"{describe(events.next)} in a sequence; only scalars are allowed there")
         text = events.next.value
         value = read_scalar(events, bytes_too=True)
         if values and type(value) is not type(values[0]):

@@ -163,7 +163,7 @@ class Reader:
         while at < len(self._text):
             match = TOKEN.match(self._text, at)
             if match is None:
-                raise LineError(at, f"{self._text[at]!r} is no word of IDL")
+                raise LineError(at, f"{self._text[at]!r} is not a token of IDL")
             kind = str(match.lastgroup)
             if kind != "space":
                 yield Token(kind, match[0], at)
@@ -185,11 +185,11 @@ class Reader:
     def _expect(self, text: str) -> None:
         if not self._has(text):
             shown = repr(self._next.text[:40]) if self._next.kind != "end" else "the end"
-            raise LineError(self._next.at, f"{shown} where {text!r} should stand")
+            raise LineError(self._next.at, f"{shown} where {text!r} was expected")
 
     def _name(self) -> Token:
         if self._next.kind != "name":
-            raise LineError(self._next.at, f"{self._next.text[:40]!r} where a name should stand")
+            raise LineError(self._next.at, f"{self._next.text[:40]!r} where a name was expected")
         return self._take()
 
     def definitions(self, scope: tuple[str, ...]) -> None:
@@ -262,7 +262,7 @@ class Reader:
                     return sign * value
                 if value is not None and sign == 1:
                     return value
-        raise LineError(word.at, f"{word.text[:40]!r} is no value that is known here")
+        raise LineError(word.at, f"{word.text[:40]!r} is not a known value")
 
     def _structure(self, scope: tuple[str, ...], comment: str) -> None:
         name = self._name()
@@ -313,7 +313,7 @@ class Reader:
         at = self._next.at
         size = self._value(scope)
         if not isinstance(size, int) or not 0 < size < 1 << 32:
-            raise LineError(at, f"{str(size)[:40]!r} is no size: at least 1, and less than 2^32")
+            raise LineError(at, f"{str(size)[:40]!r} is not a valid size: use 1 to 2^32 - 1")
         return size
 
     def _typedef(self, scope: tuple[str, ...]) -> None:
@@ -373,7 +373,7 @@ class Reader:
         if len(parts) == 1:
             parts = (*scope, *parts)
         if len(parts) < 2 or " " in text:  # it has no package and name
-            raise LineError(word.at, f"{text!r} is no type that is known here")
+            raise LineError(word.at, f"{text!r} is not a known type")
         package, _, name = named(parts).split("/")
         return TypeText(f"{package}/{name}")
 
@@ -431,7 +431,7 @@ def default_in(type_: TypeText, notes: dict[str, Any], at: int) -> object:
         try:
             given = ast.literal_eval(value)
         except (ValueError, SyntaxError, MemoryError, RecursionError, TypeError) as error:
-            raise LineError(at, f"the default {value[:40]!r} is no list of values") from error
+            raise LineError(at, f"the default {value[:40]!r} is not a list of values") from error
         value = list(given) if isinstance(given, list | tuple) else [given]
     return checked_value(type_, value, at)
 
@@ -439,5 +439,5 @@ def default_in(type_: TypeText, notes: dict[str, Any], at: int) -> object:
 def checked_value(type_: TypeText, value: object, at: int) -> object:
     """Convert a value to its type; raise `LineError` if it does not fit."""
     if type_.name not in PRIMITIVES:
-        raise LineError(at, f"{type_.name} has no values that could be written here")
+        raise LineError(at, f"{type_.name} cannot have values here")
     return checked(type_, value, at)

@@ -230,7 +230,7 @@ class TransitionRunner:
         """
         if self._scope is not None and not self._scope.expired():
             self._wanted = result
-            self._scope.reschedule(0.0)  # in the past: at the next turn of the loop
+            self._scope.reschedule(0.0)  # in the past: takes effect in the loop's next iteration
 
     async def wait_idle(self) -> None:
         """Wait until no transition is in progress."""

@@ -1,4 +1,4 @@
-"""Nodes without callbacks, for other APIs over aionode."""
+"""Nodes without callbacks, for other APIs on top of aionode."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ TEN = QoSProfile(depth=10)
 
 
 class Kept:
-    """A reader that keeps what it gets, and the threads in which it came."""
+    """A reader that keeps what it receives, and the threads in which it was received."""
 
     raw = False
     endpoint: EndpointInfo
@@ -55,7 +55,7 @@ class Kept:
         inline_deadline_ns: int = 0,
         arrived_ns: int = 0,
     ) -> None:
-        """Take a message."""
+        """Keep a message."""
         self.messages.append(msg)
         self.infos.append(SampleInfo(gid, sequence, source_ns))
         self.threads.append(threading.get_ident())
@@ -65,32 +65,32 @@ class Kept:
         self.alive.append(gid)
 
     def reject(self, error: Exception) -> None:
-        """Nothing is rejected here."""
+        """Do nothing: no message is rejected here."""
 
     @property
     def waiting(self) -> int:
-        """None."""
+        """Return 0: nothing waits."""
         return 0
 
     def has_room(self) -> bool:
-        """Whether the limit is not reached."""
+        """Return whether the limit has not been reached."""
         return len(self.messages) < self.limit
 
     async def wait_for_room(self) -> None:
-        """Nothing waits here."""
+        """Do nothing: nobody waits here."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Nothing waits here."""
+        """Do nothing: nobody waits here."""
 
 
 @pytest.fixture
 def context() -> Context:
-    """Return a context without network."""
+    """Return a context without a network."""
     return Context(transport="local")
 
 
 async def test_a_bare_node_and_its_endpoints_are_in_the_graph(context: Context) -> None:
-    """Other nodes see them as those of any node, until they are destroyed."""
+    """Other nodes see them like those of any node, until they are destroyed."""
     async with context:
         node = BareNode(context, "bare", "/robot")
         publisher = node.create_publisher(String, "/robot/words", TEN)
@@ -112,7 +112,7 @@ async def test_a_bare_node_and_its_endpoints_are_in_the_graph(context: Context) 
 
 
 async def test_the_end_of_the_context_destroys_bare_nodes(context: Context) -> None:
-    """They belong to it, as all nodes do."""
+    """They belong to the context, as all nodes do."""
     async with context:
         BareNode(context, "bare")
 
@@ -120,7 +120,7 @@ async def test_the_end_of_the_context_destroys_bare_nodes(context: Context) -> N
 
 
 class Words(Message, typename="foreign/msg/Words", by_name=False):
-    """A message that is found by its description only, as if it were another process's."""
+    """A message class found only by its description, as if it came from another process."""
 
     text: str = "none"
 
@@ -129,7 +129,7 @@ class Words(Message, typename="foreign/msg/Words", by_name=False):
 async def test_a_bare_node_describes_the_types_of_its_endpoints(
     kind: Any, context: Context
 ) -> None:
-    """Nobody else may know them; those of an endpoint that has gone are not described."""
+    """No other process may know the types. The types of a destroyed endpoint are not described."""
     async with context, Node("curious", context=context) as curious:
         node = BareNode(context, "bare", "/robot")
         node.describe_types()
@@ -172,7 +172,7 @@ async def test_serialized_and_typed_endpoints_hear_each_other(context: Context) 
 async def test_messages_to_this_context_are_delivered_in_the_thread_that_publishes(
     context: Context,
 ) -> None:
-    """An API with threads of its own need not wait for the loop inside one process."""
+    """An API with its own threads does not have to wait for the event loop within one process."""
     async with context:
         node = BareNode(context, "bare")
         reader = Kept()
@@ -190,7 +190,7 @@ async def test_messages_to_this_context_are_delivered_in_the_thread_that_publish
 
         assert [each.data for each in reader.messages] == ["here"]
         assert reader.threads == results[1:]
-        assert results[0] is None  # there is no other subscription
+        assert results[0] is None  # # there are no other subscriptions
 
 
 async def test_late_subscriptions_get_what_a_transient_local_publisher_has_kept(
@@ -211,7 +211,7 @@ async def test_late_subscriptions_get_what_a_transient_local_publisher_has_kept(
 
 
 async def test_a_full_keep_all_reader_makes_publishing_fail(context: Context) -> None:
-    """Nothing is lost without a word, and nothing waits."""
+    """No message is dropped silently, and publishing does not block."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     async with context:
         node = BareNode(context, "bare")
@@ -227,7 +227,7 @@ async def test_a_full_keep_all_reader_makes_publishing_fail(context: Context) ->
 
 
 async def test_a_publisher_says_that_it_is_alive(context: Context) -> None:
-    """Liveliness policies are kept by the API above, which has the callbacks."""
+    """The API above, which has the callbacks, implements the liveliness policies."""
     async with context:
         node = BareNode(context, "bare")
         reader = Kept()
@@ -240,7 +240,7 @@ async def test_a_publisher_says_that_it_is_alive(context: Context) -> None:
 
 
 async def test_a_publisher_keeps_no_message_longer_than_its_lifespan(context: Context) -> None:
-    """Of a hundred large ones for late subscriptions, those that have expired only take memory."""
+    """Expired messages kept for late subscriptions would only waste memory."""
     profile = TEN.replace(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     async with context:
         node = BareNode(context, "bare")
@@ -254,7 +254,7 @@ async def test_a_publisher_keeps_no_message_longer_than_its_lifespan(context: Co
 
 
 class Answers:
-    """Collects what becomes of calls."""
+    """Collects the outcomes of calls."""
 
     def __init__(self) -> None:
         self.replies: list[Any] = []
@@ -262,7 +262,7 @@ class Answers:
 
 
 async def test_a_call_is_answered_once(context: Context) -> None:
-    """The first answer counts, and a request is answered whenever the server likes."""
+    """The first answer counts. The server may answer at any time."""
     async with context:
         node = BareNode(context, "bare")
         requests: list[Request] = []
@@ -280,7 +280,7 @@ async def test_a_call_is_answered_once(context: Context) -> None:
 
 
 async def test_a_failed_and_a_dropped_request_are_told_apart(context: Context) -> None:
-    """An API above may turn the one into an exception and the other into a wait."""
+    """An API above may turn one into an exception and the other into a wait."""
     async with context:
         node = BareNode(context, "bare")
         requests: list[Request] = []
@@ -298,7 +298,7 @@ async def test_a_failed_and_a_dropped_request_are_told_apart(context: Context) -
 
 
 async def test_a_cancelled_call_is_forgotten(context: Context) -> None:
-    """A late answer must not reach a caller that has given up."""
+    """A late answer must not reach a caller that has already given up."""
     async with context:
         node = BareNode(context, "bare")
         requests: list[Request] = []
@@ -314,7 +314,7 @@ async def test_a_cancelled_call_is_forgotten(context: Context) -> None:
 
 
 async def test_without_a_server_nothing_is_called(context: Context) -> None:
-    """No server could answer; the program decides how long to wait."""
+    """No server could answer; the program decides how long to wait for one."""
     async with context:
         client = BareNode(context, "bare").create_client(AddTwoInts, "/add", TEN)
         answers = Answers()

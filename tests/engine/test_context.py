@@ -1,4 +1,4 @@
-"""A context opens with its first node and closes after the last."""
+"""A context opens with its first node and closes after its last."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class SlowTransport(LocalTransport):
-    """Opens and closes when it is told to, and notes what it does."""
+    """A transport that opens and closes only when told to, and records what it does."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,19 +33,19 @@ class SlowTransport(LocalTransport):
         self.may_close = asyncio.Event()
 
     async def open(self, graph: Graph) -> None:
-        """Wait until it may."""
+        """Wait for permission to open."""
         self.events.append("opening")
         await self.may_open.wait()
         self.events.append("open")
 
     async def close(self) -> None:
-        """Wait until it may."""
+        """Wait for permission to close."""
         self.events.append("closing")
         await self.may_close.wait()
         self.events.append("closed")
 
     def hurry(self) -> None:
-        """Wait for nothing any more."""
+        """Stop waiting for permission."""
         self.may_open.set()
         self.may_close.set()
 
@@ -56,7 +56,7 @@ def run(tasks: asyncio.TaskGroup, node: Node) -> asyncio.Task[None]:
 
 
 async def test_the_second_node_waits_until_the_first_has_opened() -> None:
-    """Both would open the one connection otherwise."""
+    """Otherwise both would open the same connection."""
     transport = SlowTransport()
     context = Context(transport=transport)
     async with asyncio.TaskGroup() as tasks:
@@ -73,7 +73,7 @@ async def test_the_second_node_waits_until_the_first_has_opened() -> None:
 
 
 async def test_a_node_that_comes_while_the_context_closes_opens_it_anew() -> None:
-    """Opening and closing at once would leave a connection that is half of each."""
+    """If it opened and closed at the same time, the connection would be left half open."""
     transport = SlowTransport()
     transport.may_open.set()
     context = Context(transport=transport)
@@ -93,7 +93,7 @@ async def test_a_node_that_comes_while_the_context_closes_opens_it_anew() -> Non
 
 
 async def test_a_shut_down_context_is_not_opened_for_nodes_that_waited() -> None:
-    """Their nodes are destroyed already, and end without a word."""
+    """Their nodes are already destroyed, and end silently."""
     transport = SlowTransport()
     context = Context(transport=transport)
     async with asyncio.TaskGroup() as tasks:
@@ -108,7 +108,7 @@ async def test_a_shut_down_context_is_not_opened_for_nodes_that_waited() -> None
 
 
 async def test_a_context_that_could_not_open_can_be_tried_again() -> None:
-    """What is in the way may have gone."""
+    """The cause may be gone by then."""
 
     class Failing(LocalTransport):
         attempts = 0
@@ -126,7 +126,7 @@ async def test_a_context_that_could_not_open_can_be_tried_again() -> None:
 
 
 async def test_a_context_works_in_one_loop_at_a_time() -> None:
-    """Nodes of two loops would call each other's callbacks in foreign threads."""
+    """Otherwise nodes of two loops would call each other's callbacks in the wrong threads."""
     context = local_context()
     other = Node("other", context=context)
     async with Node("node", context=context):
@@ -140,7 +140,7 @@ async def test_a_context_works_in_one_loop_at_a_time() -> None:
 
 
 def test_two_loops_that_open_a_context_at_once_are_told_at_once() -> None:
-    """Also while the first is still connecting: one works, the other gets the error."""
+    """While the first is still connecting, one succeeds and the other gets the error at once."""
     opening, may_open = threading.Event(), threading.Event()
 
     class Slow(LocalTransport):
@@ -169,7 +169,7 @@ def test_two_loops_that_open_a_context_at_once_are_told_at_once() -> None:
 
 
 async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
-    """A second attempt may succeed, in another loop too."""
+    """A second attempt may succeed, even in another loop."""
 
     class Failing(LocalTransport):
         fails = True
@@ -195,7 +195,7 @@ async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
 
 
 def test_a_context_may_be_used_in_one_loop_after_another() -> None:
-    """As programs do that call `asyncio.run` several times."""
+    """Programs that call `asyncio.run` several times do this."""
     context = local_context()
 
     async def use() -> None:
@@ -207,7 +207,7 @@ def test_a_context_may_be_used_in_one_loop_after_another() -> None:
 
 
 def test_a_loop_that_was_closed_over_a_node_does_not_hold_the_context() -> None:
-    """That node cannot be ended properly any more."""
+    """Its node can no longer be ended properly."""
     context = local_context()
     loop = asyncio.new_event_loop()
     loop.run_until_complete(Node("left", context=context).__aenter__())
@@ -221,13 +221,13 @@ def test_a_loop_that_was_closed_over_a_node_does_not_hold_the_context() -> None:
 
 
 class CountingSelector(selectors.DefaultSelector):
-    """Counts how often it is asked for events without waiting, and with."""
+    """Counts how often it is polled for events, with and without waiting."""
 
     polls = 0
     waits = 0
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        """Wait as the selector of the system does."""
+        """Wait as the system's selector does."""
         if timeout is not None and timeout <= 0:
             self.polls += 1
         else:
@@ -236,7 +236,7 @@ class CountingSelector(selectors.DefaultSelector):
 
 
 def polls_and_waits(spin_us: float) -> tuple[int, int]:
-    """Return how often a loop asked for events during a wait of 20 ms in a context."""
+    """Return how often a loop polled and how often it waited during 20 ms in a context."""
     selector = CountingSelector()
     with asyncio.Runner(loop_factory=lambda: asyncio.SelectorEventLoop(selector)) as runner:
 
@@ -253,7 +253,7 @@ def polls_and_waits(spin_us: float) -> tuple[int, int]:
 
 
 def test_a_loop_that_spins_asks_again_and_again_before_it_sleeps() -> None:
-    """Waking a thread takes longer than the message."""
+    """Because waking a thread takes longer than delivering the message."""
     polls, waits = polls_and_waits(spin_us=1_000)
     assert polls > 5
     assert waits > 0  # the rest of the time
@@ -261,14 +261,14 @@ def test_a_loop_that_spins_asks_again_and_again_before_it_sleeps() -> None:
 
 
 def test_a_spinning_loop_is_on_time_for_a_timer() -> None:
-    """It spins no longer than until the next timer."""
+    """It spins only until the next timer is due."""
     polls, waits = polls_and_waits(spin_us=1e6)
     assert polls > 5
     assert waits == 0
 
 
 def test_a_loop_spins_only_while_its_context_is_open() -> None:
-    """And for one context."""
+    """And for only one context."""
     selector = selectors.DefaultSelector()
 
     async def main() -> None:
@@ -285,7 +285,7 @@ def test_a_loop_spins_only_while_its_context_is_open() -> None:
 
 
 def test_a_loop_that_cannot_spin_says_so() -> None:
-    """Uvloop waits in C, where nothing can be put in between."""
+    """The loop of uvloop waits in C, where nothing can be inserted."""
 
     async def main() -> None:
         async with Context(transport="local", spin_us=10):
@@ -299,7 +299,7 @@ def test_a_loop_that_cannot_spin_says_so() -> None:
 
 
 def test_how_long_to_spin_is_a_number_of_microseconds() -> None:
-    """Said where the context is made, not when it opens."""
+    """An invalid value is reported when the context is created, not when it opens."""
     with pytest.raises(ValueError, match="spin_us=-1 is not 0 or more microseconds"):
         Context(transport="local", spin_us=-1)
     with pytest.raises(TypeError, match="spin_us=True is not a number of microseconds"):
@@ -307,7 +307,7 @@ def test_how_long_to_spin_is_a_number_of_microseconds() -> None:
 
 
 async def test_contexts_with_the_same_seed_draw_the_same_ids() -> None:
-    """Ids are part of what nodes publish, which is to be the same in every run of a test."""
+    """Ids are part of what nodes publish, which must be the same in every run of a test."""
     contexts = [local_context(seed=seed) for seed in (1, 1, 2)]
 
     first, same, other = [(one.participant, one.new_uuid(), one.new_uuid()) for one in contexts]
@@ -318,13 +318,13 @@ async def test_contexts_with_the_same_seed_draw_the_same_ids() -> None:
 
 
 def test_a_seed_is_refused_for_a_context_with_a_network() -> None:
-    """Two processes with the same ids would take each other's messages for their own."""
+    """Two processes with the same ids would mistake each other's messages for their own."""
     with pytest.raises(ValueError, match="seed=1 gives it ids that other contexts may have"):
         Context(seed=1)
 
 
 async def test_a_manual_clock_lets_queues_take_turns_whatever_the_machine_does() -> None:
-    """How many messages a callback gets in a turn must not depend on how fast it is."""
+    """How many messages a callback gets per turn must not depend on the speed of the machine."""
     clock = ManualClock()
     seen: list[str] = []
     async with local_context(clock=clock) as context, Node("node", context=context) as node:

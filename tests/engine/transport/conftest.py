@@ -1,4 +1,4 @@
-"""Fixtures of tests of transports."""
+"""Fixtures for the tests of transports."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from tests.support.peers import isolated_environment
 
 @pytest.fixture(autouse=True)
 def isolated(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Contexts made in a test hear each other, and nothing else that runs on the machine."""
+    """Isolate contexts made in a test: they reach each other, but nothing else on the machine."""
     if request.path.parent.name == "zenoh":
-        monkeypatch.setenv("AIONODE_LINK", "off")  # they are about Zenoh alone
+        monkeypatch.setenv("AIONODE_LINK", "off")  # # they test Zenoh only
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)

@@ -28,7 +28,7 @@ OVER_FIVE = ContentFilterOptions("data > %0", ["5"])
 
 
 class Pair(NamedTuple):
-    """Two running nodes, and how messages get from the left one to the right one."""
+    """Two running nodes, and the way messages take from the left one to the right one."""
 
     left: Node
     right: Node
@@ -50,7 +50,7 @@ async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
 
 
 async def received(subscription: Subscription[Any], last: int) -> list[int]:
-    """Return what arrives, up to a number."""
+    """Return the messages that arrive, up to a number."""
     numbers: list[int] = []
     while not numbers or numbers[-1] != last:
         numbers.append((await subscription.receive()).data)
@@ -58,7 +58,7 @@ async def received(subscription: Subscription[Any], last: int) -> list[int]:
 
 
 async def test_only_what_passes_arrives_and_in_order(pair: Pair) -> None:
-    """From the first message on, whether the publisher knows the filter yet or not."""
+    """From the first message on, whether or not the publisher knows the filter yet."""
     subscription = pair.right.create_subscription(
         Int32, "n", None, DEEP, content_filter_options=OVER_FIVE
     )
@@ -73,7 +73,7 @@ async def test_only_what_passes_arrives_and_in_order(pair: Pair) -> None:
 
 
 async def test_what_does_not_pass_is_counted_and_not_queued(pair: Pair) -> None:
-    """Neither as dropped nor as lost, though the queue has room for ten messages only."""
+    """Neither as dropped nor as lost, although the queue has room for only ten messages."""
     subscription = pair.right.create_subscription(
         Int32, "n", None, 10, content_filter_options=OVER_FIVE
     )
@@ -89,7 +89,7 @@ async def test_what_does_not_pass_is_counted_and_not_queued(pair: Pair) -> None:
 
 
 async def test_the_filter_can_be_changed_and_removed(pair: Pair) -> None:
-    """From the next message on: no publisher has to learn of it."""
+    """From the next message on, because publishers do not have to learn of it."""
     subscription = pair.right.create_subscription(
         Int32, "n", None, DEEP, content_filter_options=OVER_FIVE
     )
@@ -109,7 +109,7 @@ async def test_the_filter_can_be_changed_and_removed(pair: Pair) -> None:
 
 
 async def test_each_subscription_gets_what_it_wants(pair: Pair) -> None:
-    """One without a filter gets everything beside them."""
+    """A subscription without a filter gets everything."""
     low, high, everything = (
         pair.right.create_subscription(
             Int32, "n", None, DEEP, content_filter_options=ContentFilterOptions(expression)
@@ -129,7 +129,7 @@ async def test_each_subscription_gets_what_it_wants(pair: Pair) -> None:
 
 @pytest.mark.parametrize("pair", ["zenoh", "link"], indirect=True)
 async def test_filters_that_older_processes_announce_are_ignored(pair: Pair) -> None:
-    """Publishers left out what they let not pass, before filters were the subscription's own."""
+    """Publishers left out messages themselves before filtering moved to subscriptions."""
     subscription = pair.right.create_subscription(Int32, "n", None, DEEP)
     publisher = pair.left.create_publisher(Int32, "n", DEEP)
     await publisher.wait_for_subscribers()
@@ -153,7 +153,7 @@ async def test_filters_that_older_processes_announce_are_ignored(pair: Pair) -> 
 
 
 async def test_nothing_that_passes_is_lost_when_most_is_left_out(pair: Pair) -> None:
-    """KEEP_ALL: acknowledgements, windows and gaps work with holes in the numbers."""
+    """With KEEP_ALL, acknowledgements, windows and gaps work although numbers are missing."""
     subscription = pair.right.create_subscription(
         Int32, "n", None, KEEP_ALL, content_filter_options=ContentFilterOptions("data >= 10")
     )
@@ -203,7 +203,7 @@ async def test_a_late_subscription_gets_what_passes_of_the_history(pair: Pair) -
 
 
 async def test_an_invalid_message_is_reported_by_publish(pair: Pair) -> None:
-    """A filter that cannot compare its value is no reason to leave it out in silence."""
+    """A filter that cannot compare a value must not drop the message silently."""
     pair.right.create_subscription(Int32, "n", None, DEEP, content_filter_options=OVER_FIVE)
     publisher = pair.left.create_publisher(Int32, "n", DEEP)
     await publisher.wait_for_subscribers()
@@ -216,7 +216,7 @@ async def test_an_invalid_message_is_reported_by_publish(pair: Pair) -> None:
 
 
 async def test_a_filter_is_described_as_in_rclpy(node: Node) -> None:
-    """`is_cft_enabled`, `get_content_filter`, `set_content_filter`."""
+    """With `is_cft_enabled`, `get_content_filter` and `set_content_filter`."""
     subscription = node.create_subscription(Int32, "n", content_filter_options=OVER_FIVE)
 
     assert subscription.is_cft_enabled
@@ -227,7 +227,7 @@ async def test_a_filter_is_described_as_in_rclpy(node: Node) -> None:
 
 
 async def test_a_filter_that_does_not_fit_is_refused(node: Node) -> None:
-    """Where it is given; the filter before it stays."""
+    """When it is set; the previous filter stays."""
     with pytest.raises(ContentFilterError, match="has no field 'date'"):
         node.create_subscription(
             Int32, "n", content_filter_options=ContentFilterOptions("date = 1")
@@ -243,7 +243,7 @@ async def test_a_filter_that_does_not_fit_is_refused(node: Node) -> None:
 
 
 async def test_a_callback_is_called_with_what_passes(node: Node) -> None:
-    """With its info, numbered as it is published."""
+    """With its info, whose number is that of the publisher."""
     heard: list[tuple[str, int]] = []
     node.create_subscription(
         String,

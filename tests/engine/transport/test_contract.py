@@ -1,8 +1,8 @@
-"""One suite for every transport: a node in one process and its twin in another behave alike.
+"""One suite for all transports: a node behaves alike in this process and in another.
 
-`left` and `right` are two running nodes. With ``local`` they share a context, with ``zenoh``,
-``link`` and ``rcl`` each has its own, as two processes would. ``rcl`` needs an installed ROS 2, and
-differs in what `OVER_RCL` lists; it has only such types as are on PyPI. ``fake_rcl`` is the same
+`left` and `right` are two running nodes. With ``local`` they share a context; with ``zenoh``,
+``link`` and ``rcl`` each has its own, as in two processes. ``rcl`` needs an installed ROS 2,
+differs in what `OVER_RCL` lists, and has only the types that are on PyPI. ``fake_rcl`` is the same
 without a ROS 2.
 """
 
@@ -44,7 +44,7 @@ Response = BasicTypes.Response
 
 
 class Pair(NamedTuple):
-    """Two running nodes, and where a third can be made beside the right one."""
+    """Two running nodes, and a way to create a third beside the right one."""
 
     left: Node
     right: Node
@@ -56,7 +56,7 @@ OVER_RCL = {
     "test_so_many_bytes_wait_for_a_service": "as above",
     "test_both_sides_see_the_same_graph": "DDS discovery does not tell history and depth",
 }
-"""The tests of what a middleware under rcl cannot do, with the reasons."""
+"""The tests of features that a middleware under rcl lacks, with the reasons."""
 
 
 @pytest.fixture(params=["local", "zenoh", "link", "rcl", "fake_rcl"])
@@ -87,7 +87,7 @@ async def pair(
 
 
 def numbers(reader: Any, count: int) -> Any:
-    """Return a coroutine that takes so many numbers."""
+    """Return a coroutine that receives so many numbers."""
 
     async def take() -> list[int]:
         return [(await reader.receive()).data for _ in range(count)]
@@ -96,7 +96,7 @@ def numbers(reader: Any, count: int) -> Any:
 
 
 def add(request: Request, response: Response) -> Response:
-    """Answer as the tutorial's server does."""
+    """Respond like the tutorial's server."""
     response.int64_value = request.int64_value + request.int32_value
     return response
 
@@ -105,7 +105,7 @@ def add(request: Request, response: Response) -> Response:
 
 
 async def test_messages_arrive_in_order_and_once(pair: Pair) -> None:
-    """However they travel."""
+    """Whatever route they take."""
     reader = pair.right.create_subscription(Int32, "numbers", None, 100)
     writer = pair.left.create_publisher(Int32, "numbers", 100)
     await writer.wait_for_subscribers()
@@ -116,7 +116,7 @@ async def test_messages_arrive_in_order_and_once(pair: Pair) -> None:
 
 
 async def test_service_events_arrive_from_both_sides(pair: Pair) -> None:
-    """Of the client and of the server, with their contents and one gid."""
+    """Both of the client and of the server, with their contents and one gid."""
     server = pair.right.create_service(BasicTypes, "add", add)
     client = pair.left.create_client(BasicTypes, "add")
     for endpoint, node in ((server, pair.right), (client, pair.left)):
@@ -142,7 +142,7 @@ async def test_service_events_arrive_from_both_sides(pair: Pair) -> None:
 
 
 async def test_readers_on_both_sides_hear_each_message_once(pair: Pair) -> None:
-    """The publisher's own process is no exception."""
+    """Including readers in the publisher's own process."""
     readers = [node.create_subscription(Int32, "numbers", None, 10) for node in pair[:2]]
     writer = pair.left.create_publisher(Int32, "numbers", 10)
     await writer.wait_for_subscribers(2)
@@ -154,7 +154,7 @@ async def test_readers_on_both_sides_hear_each_message_once(pair: Pair) -> None:
 
 
 async def test_callbacks_get_what_readers_get(pair: Pair) -> None:
-    """With message and info."""
+    """The message and its info."""
     heard: list[tuple[Int32, Any]] = []
     came = asyncio.Event()
 
@@ -176,7 +176,7 @@ async def test_callbacks_get_what_readers_get(pair: Pair) -> None:
 
 
 async def test_arrays_arrive_read_only_and_whole(pair: Pair) -> None:
-    """Large ones, small ones, and none."""
+    """Large ones, small ones and empty ones."""
     reader = pair.right.create_subscription(JointState, "joints")
     images = pair.right.create_subscription(Image, "image")
     joints = pair.left.create_publisher(JointState, "joints", 10)
@@ -200,7 +200,7 @@ async def test_a_late_reader_of_a_kept_topic_gets_the_last_ones_once(pair: Pair)
     writer = pair.left.create_publisher(Int32, "map", profile)
     for number in range(4):
         writer.publish(Int32(data=number))
-    await writer.drain()  # a thread puts them where late readers find them
+    await writer.drain()  # # a thread stores them where late readers find them
     late = pair.right.create_subscription(Int32, "map", None, profile)
     volatile = pair.right.create_subscription(Int32, "map", None, 10)
     assert await numbers(late, 2) == [2, 3]
@@ -211,7 +211,7 @@ async def test_a_late_reader_of_a_kept_topic_gets_the_last_ones_once(pair: Pair)
 
 
 async def test_raw_readers_get_the_bytes(pair: Pair) -> None:
-    """The same ones, wherever they come from."""
+    """They get the same bytes, whichever way they come."""
     reader = pair.right.create_subscription(Int32, "numbers", raw=True)
     writer = pair.left.create_publisher(Int32, "numbers", 10)
     await writer.wait_for_subscribers()
@@ -242,7 +242,7 @@ async def test_direct_subscriptions_get_the_bytes_and_times_of_every_message(pai
 
 
 async def test_a_value_that_does_not_fit_is_refused_by_publish(pair: Pair) -> None:
-    """No subscription gets it, and the next one arrives."""
+    """No subscription gets it, and the next message arrives."""
     reader = pair.right.create_subscription(Int8, "numbers")
     writer = pair.left.create_publisher(Int8, "numbers", 10)
     await writer.wait_for_subscribers()
@@ -253,7 +253,7 @@ async def test_a_value_that_does_not_fit_is_refused_by_publish(pair: Pair) -> No
 
 
 async def test_nothing_is_lost_with_keep_all_and_drain(pair: Pair) -> None:
-    """A publisher that waits for room loses nothing."""
+    """Nothing is lost if the publisher waits for room."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     reader = pair.right.create_subscription(Int32, "numbers", None, keep_all)
     writer = pair.left.create_publisher(Int32, "numbers", keep_all)
@@ -267,7 +267,7 @@ async def test_nothing_is_lost_with_keep_all_and_drain(pair: Pair) -> None:
 
 
 async def test_a_destroyed_publisher_leaves_the_graph_of_the_other_side(pair: Pair) -> None:
-    """And the counts with it."""
+    """The counts change with it."""
     reader = pair.right.create_subscription(Int32, "numbers")
     writer = pair.left.create_publisher(Int32, "numbers", 10)
     while reader.get_publisher_count() != 1:
@@ -290,7 +290,7 @@ async def test_a_call_returns_the_response(pair: Pair) -> None:
 
 
 async def test_many_calls_at_once_are_told_apart(pair: Pair) -> None:
-    """Answered out of order."""
+    """They are answered out of order."""
     gate = asyncio.Event()
 
     async def handler(request: Request) -> Response:
@@ -309,7 +309,7 @@ async def test_many_calls_at_once_are_told_apart(pair: Pair) -> None:
 
 
 async def test_a_failing_handler_answers_with_its_error(pair: Pair) -> None:
-    """Type and text cross the network."""
+    """The error's type and text cross the network."""
 
     def handler(request: Request) -> Response:
         raise ValueError(f"cannot add {request.int64_value}")
@@ -323,7 +323,7 @@ async def test_a_failing_handler_answers_with_its_error(pair: Pair) -> None:
 
 
 async def test_a_server_that_goes_away_ends_the_call(pair: Pair) -> None:
-    """At once, with an error that says so."""
+    """The call ends at once, with an error that gives the reason."""
     began = asyncio.Event()
 
     async def handler(request: Request) -> Response:
@@ -344,7 +344,7 @@ async def test_a_server_that_goes_away_ends_the_call(pair: Pair) -> None:
 
 
 async def test_a_cancelled_call_does_not_disturb_the_next(pair: Pair) -> None:
-    """Its late answer goes nowhere."""
+    """Its late response is discarded."""
     began = asyncio.Event()
     gate = asyncio.Event()
 
@@ -367,7 +367,7 @@ async def test_a_cancelled_call_does_not_disturb_the_next(pair: Pair) -> None:
 
 
 async def test_parameters_of_the_other_side_can_be_set(pair: Pair) -> None:
-    """Services with real types, six of them."""
+    """By six services with real types."""
     pair.right.declare_parameter("speed", 1.0)
     client = AsyncParameterClient(pair.left, "/right")
     await client.wait_for_services()
@@ -392,13 +392,13 @@ async def test_both_sides_see_the_same_graph(pair: Pair) -> None:
 
 @pytest.fixture
 def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let 1 MB wait in each queue."""
+    """Limit each queue to 1 MB."""
     monkeypatch.setenv("AIONODE_QUEUE_BYTES", "1000000")
 
 
 @pytest.mark.usefixtures("small_queues")
 async def test_so_many_bytes_wait_in_a_subscription_whatever_its_depth(pair: Pair) -> None:
-    """The oldest make room, and are counted; one that is larger than the limit gets through."""
+    """The oldest are dropped and counted; a message larger than the limit gets through."""
     late = pair.right.create_subscription(Image, "images", None, 1000)
     writer = pair.left.create_publisher(Image, "images", 1000)
     await writer.wait_for_subscribers()
@@ -417,7 +417,7 @@ async def test_so_many_bytes_wait_in_a_subscription_whatever_its_depth(pair: Pai
 
 @pytest.mark.usefixtures("small_queues")
 async def test_so_many_bytes_wait_for_a_service(pair: Pair) -> None:
-    """One more is refused at once: its client waits for nothing."""
+    """One more is refused at once, so that its client does not wait in vain."""
     opened = asyncio.Event()
 
     async def wait(request: Request) -> Response:

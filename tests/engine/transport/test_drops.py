@@ -1,4 +1,4 @@
-"""What is dropped of what others send: nothing without a number and a line in the log."""
+"""Dropped data of others: nothing is dropped without a counter and a log line."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ OTHER_WARNINGS = {
     "zenoh/bridge/_state.py": "our endpoint whose name a bridge does not survive",
     "zenoh/endpoints/publisher.py": "our messages that were not delivered, in stats.dropped",
 }
-"""Files that warn of something else than what others send, and of what."""
+"""Files with warnings about anything other than data of others, and the subjects."""
 
 UNREADABLE = {"DecodeError", "FrameError"}
 TOLD_BY = {"note", "note_malformed", "_reject", "refuse", "reject", "close", "fail"}
@@ -43,7 +43,7 @@ TOLD_BY = {"note", "note_malformed", "_reject", "refuse", "reject", "close", "fa
 def test_each_drop_has_a_number_and_a_line_limited_in_rate(
     drop: Drop, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The first is said at once, and the others after 10 s, 20 s and so on."""
+    """The first is logged at once, the others after 10 s, 20 s and so on."""
     now_ns = 0
     drops = Drops(now_ns=lambda: now_ns)
     for _ in range(60):
@@ -62,14 +62,14 @@ def test_each_drop_has_a_number_and_a_line_limited_in_rate(
 
 
 def test_a_number_that_comes_at_once_is_said(caplog: pytest.LogCaptureFixture) -> None:
-    """A queue tells of a hundred at a time."""
+    """A queue may report a hundred at a time."""
     Drops().note(Drop.BUSY_LOOP, "/image", "32 MiB", count=150)
 
     assert "(150 at once)" in caplog.text
 
 
 def test_only_so_many_subjects_are_told_apart(caplog: pytest.LogCaptureFixture) -> None:
-    """Others may invent any number of names."""
+    """Other processes may invent any number of names."""
     drops = Drops()
     caplog.set_level(logging.CRITICAL)
     for number in range(2 * SUBJECTS):
@@ -81,7 +81,7 @@ def test_only_so_many_subjects_are_told_apart(caplog: pytest.LogCaptureFixture) 
 
 @pytest.mark.parametrize("drop", Drop)
 def test_each_drop_happens_somewhere(drop: Drop) -> None:
-    """A kind that nobody notes is no kind."""
+    """A kind that is never recorded is useless."""
     named = {
         node.attr
         for name, tree in SOURCES.items()
@@ -93,7 +93,7 @@ def test_each_drop_happens_somewhere(drop: Drop) -> None:
 
 
 def test_nothing_unreadable_is_left_out_without_a_word() -> None:
-    """Each place that catches it notes it, or tells the sender or the caller."""
+    """Each place that catches it records it, or informs the sender or the caller."""
     silent = [
         f"{name}:{handler.lineno}"
         for name, tree in SOURCES.items()
@@ -109,7 +109,7 @@ def test_nothing_unreadable_is_left_out_without_a_word() -> None:
 
 
 def test_every_other_warning_of_the_transports_is_known() -> None:
-    """A new place that drops something of others goes through `Drops`."""
+    """A new place that drops data of others has to use `Drops`."""
     warning = {
         name
         for name, tree in SOURCES.items()
@@ -121,7 +121,7 @@ def test_every_other_warning_of_the_transports_is_known() -> None:
 
 
 def test_a_context_tells_what_all_of_its_transports_dropped() -> None:
-    """Several may share what counts, and it counts once."""
+    """Several may share a counter, which counts only once."""
     drops = Drops()
 
     class Shared(LocalTransport):
@@ -138,7 +138,7 @@ def test_a_context_tells_what_all_of_its_transports_dropped() -> None:
 
 
 async def test_a_context_counts_messages_with_replaced_texts() -> None:
-    """They came, but not as they were sent; callbacks of every transport read them alike."""
+    """They arrived, but altered; callbacks of every transport get them alike."""
     heard: asyncio.Queue[str] = asyncio.Queue()
     async with Context(transport="local") as context, Node("n", context=context) as node:
         publisher = node.create_publisher(String, "battery", 10)
@@ -155,7 +155,7 @@ def names_in(node: ast.AST) -> set[str]:
 
 
 def called_in(node: ast.AST) -> set[str]:
-    """Return the names of the methods that are called in some code."""
+    """Return the names of the methods called in some code."""
     return {
         each.func.attr
         for each in ast.walk(node)

@@ -31,7 +31,7 @@ class Robot:
         self.commands: Publisher[Int32] = pair.left.create_publisher(Int32, "speed", 100)
 
     async def took(self, count: int) -> list[int]:
-        """Return the next messages that the wheels get, and check that none follows."""
+        """Return the next messages that the wheels get, and check that no more follow."""
         got: list[int] = await numbers(self.wheels, count)
         with pytest.raises(TimeoutError):
             async with asyncio.timeout(0.3):
@@ -48,7 +48,7 @@ async def robot(pair: Pair) -> Robot:
 
 
 async def test_the_stop_is_the_last_message_of_the_block(robot: Robot) -> None:
-    """It follows the commands, once."""
+    """It follows the commands, and comes once."""
     async with robot.commands.lease(stop=Int32(data=STOP)) as lease:
         for number in range(10):
             lease.publish(Int32(data=number))
@@ -57,7 +57,7 @@ async def test_the_stop_is_the_last_message_of_the_block(robot: Robot) -> None:
 
 
 async def test_the_stop_is_the_last_message_of_a_publisher(robot: Robot) -> None:
-    """Destroying it does not wait for the block."""
+    """Destroying the publisher does not wait for the end of the block."""
     async with robot.commands.lease(stop=Int32(data=STOP)) as lease:
         lease.publish(Int32(data=1))
         robot.commands.destroy()
@@ -68,7 +68,7 @@ async def test_the_stop_is_the_last_message_of_a_publisher(robot: Robot) -> None
 
 
 async def test_the_stop_is_sent_when_the_holder_is_silent(robot: Robot) -> None:
-    """The holder's block ends as well, after it."""
+    """The holder's block ends as well, after the stop."""
 
     async def hold() -> None:
         async with robot.commands.lease(stop=Int32(data=STOP), ttl_sec=0.05) as lease:
@@ -82,7 +82,7 @@ async def test_the_stop_is_sent_when_the_holder_is_silent(robot: Robot) -> None:
 
 
 async def test_a_loop_that_was_blocked_sends_nothing_but_the_stop(robot: Robot) -> None:
-    """What another thread has sent meanwhile does not come twice."""
+    """Messages that another thread has sent in the meantime do not come twice."""
 
     async def hold() -> None:
         async with robot.commands.lease(stop=Int32(data=STOP), ttl_sec=0.05) as lease:
@@ -98,7 +98,7 @@ async def test_a_loop_that_was_blocked_sends_nothing_but_the_stop(robot: Robot) 
 
 
 async def test_the_next_lease_goes_on(robot: Robot) -> None:
-    """Its commands follow the stop of the one before, which is not repeated behind them."""
+    """Its commands follow the previous lease's stop, which is not repeated after them."""
     for number in (1, 2):
         async with robot.commands.lease(stop=Int32(data=STOP)) as lease:
             lease.publish(Int32(data=number))
@@ -108,9 +108,9 @@ async def test_the_next_lease_goes_on(robot: Robot) -> None:
 
 
 async def test_a_late_joiner_gets_the_stop(pair: Pair) -> None:
-    """Of a transient local topic, which keeps the last message.
+    """On a transient local topic, which keeps the last message.
 
-    A publisher over Zenoh hands both to a thread: a reader that joins then gets both, in order.
+    A publisher over Zenoh hands both to a thread; a reader that joins then gets both, in order.
     """
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     commands = pair.left.create_publisher(Int32, "speed", latched)
@@ -125,7 +125,7 @@ async def test_a_late_joiner_gets_the_stop(pair: Pair) -> None:
 
 
 async def test_a_full_queue_keeps_the_stop(pair: Pair) -> None:
-    """It is the newest message; those before it are dropped and counted."""
+    """It is the newest message; older ones are dropped and counted."""
     wheels = pair.right.create_subscription(Int32, "speed", None, 1)
     commands = pair.left.create_publisher(Int32, "speed", 1)
     await commands.wait_for_subscribers()

@@ -23,7 +23,7 @@ __all__ = ["folder"]  # a fixture
 
 @asynccontextmanager
 async def publisher_elsewhere() -> AsyncIterator[tuple[LendableLoop, BarePublisher]]:
-    """Run a context with a publisher in a thread of its own, whose loop can be borrowed."""
+    """Run a context with a publisher in a separate thread, whose loop can be borrowed."""
     made: Future[tuple[LendableLoop, asyncio.Event, BarePublisher]] = Future()
 
     async def main() -> None:
@@ -47,7 +47,7 @@ async def publisher_elsewhere() -> AsyncIterator[tuple[LendableLoop, BarePublish
 
 
 async def test_messages_of_a_borrower_arrive_in_order_over_whatever_route() -> None:
-    """Also while the link is taken, in bursts, and with a socket that is full meanwhile."""
+    """Even while the link is in use, in bursts, and while the socket is full."""
     async with (
         asyncio.timeout(30),
         publisher_elsewhere() as (loop, publisher),

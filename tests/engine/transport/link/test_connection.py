@@ -1,4 +1,4 @@
-"""One end of a link, against a plain socket."""
+"""One end of a link, tested against a plain socket."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from aionode.engine.transport.link._shared_memory import BufferPool
 
 
 class Owner:
-    """Notes what happens on a connection."""
+    """Records what happens on a connection."""
 
     def __init__(self) -> None:
         self.noted: list[Any] = []
 
     def on_call(self, *_: object) -> None:
-        """Requests and replies: none here."""
+        """Ignore requests and replies: there are none here."""
 
     def on_control(self, _: Connection, control: object) -> None:
-        """Note a control frame."""
+        """Record a control frame."""
         self.noted.append(control)
 
     def on_held(self, _: Connection) -> None:
-        """Incomplete frames: none here."""
+        """Ignore incomplete frames: there are none here."""
 
     def on_closed(self, _: Connection) -> None:
-        """Note the end."""
+        """Record the end."""
         self.noted.append("closed")
 
 
 @pytest.fixture
 def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
-    """Two ends of a socket."""
+    """Return the two ends of a socket."""
     ours, theirs = socket.socketpair()
     with ours, theirs:
         ours.setblocking(False)
@@ -48,7 +48,7 @@ def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
 async def test_what_the_other_end_sent_before_it_closed_is_read_although_a_send_fails_first(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """A process that ends right after its last messages takes no confirmation of those before."""
+    """A process that exits right after its last messages reads no confirmations."""
     ours, theirs = pair
     owner = Owner()
     connection = Connection(asyncio.get_running_loop(), ours, BufferPool(), owner)

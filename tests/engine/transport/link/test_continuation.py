@@ -1,4 +1,4 @@
-"""Batches that continue a link over Zenoh, and the senders that are believed."""
+"""Batches that continue a link over Zenoh, and which senders are trusted."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ STOP = pack(Kind.STOP, 8, 0, GID, b"stop")
 
 @pytest.fixture
 def links() -> LinkSecrets:
-    """The other end of a link to the context ``a1``."""
+    """Return the other end of a link to the context ``a1``."""
     links = LinkSecrets()
     links.add("a1", SECRET)
     return links
 
 
 def test_the_other_end_of_a_link_is_believed(links: LinkSecrets) -> None:
-    """Also after a newer link has taken its place."""
+    """It is still trusted after a newer link has replaced it."""
     links.add("a1", b"n" * 16)
 
     sender, frames = links.unseal(seal(SECRET, 1, DATA + RetransmitDone().pack()))
@@ -38,14 +38,14 @@ def test_the_other_end_of_a_link_is_believed(links: LinkSecrets) -> None:
 
 @pytest.mark.parametrize("secret", [bytes(16), b"x" * 16], ids=["zeros", "another"])
 def test_nobody_else_is_believed(links: LinkSecrets, secret: bytes) -> None:
-    """Another user of the machine can put anything on the key."""
+    """Another user of the machine can publish anything under the key."""
     with pytest.raises(FrameError, match="not authenticated"):
         links.unseal(seal(secret, 1, DATA))
 
 
 @given(at=st.integers(0, 90), bit=st.integers(0, 7))
 def test_a_batch_that_was_altered_is_not_believed(at: int, bit: int) -> None:
-    """Who has seen one could else send other messages in it."""
+    """Otherwise anyone who had seen a batch could send other messages in it."""
     links = LinkSecrets()
     links.add("a1", SECRET)
     batch = bytearray(seal(SECRET, 1, DATA))
@@ -61,7 +61,7 @@ def test_a_batch_does_not_show_the_secret() -> None:
 
 
 def test_a_batch_counts_once(links: LinkSecrets) -> None:
-    """An old one could end the wait for a newer one."""
+    """A replayed batch could end the wait for a newer one."""
     first, second = seal(SECRET, 1, DATA), seal(SECRET, 2, DATA)
     links.unseal(first)
     links.unseal(second)
@@ -72,7 +72,7 @@ def test_a_batch_counts_once(links: LinkSecrets) -> None:
 
 
 def test_a_stop_may_come_more_than_once_and_before_a_batch(links: LinkSecrets) -> None:
-    """It is sent past the event loop, with another priority, and again for safety."""
+    """It is sent past the event loop, with another priority, and repeated for safety."""
     for batch in (seal(SECRET, STOPS, STOP), seal(SECRET, 1, DATA), seal(SECRET, STOPS, STOP)):
         assert links.unseal(batch)[0] == "a1"
 
@@ -85,7 +85,7 @@ def test_only_stops_may_come_more_than_once(links: LinkSecrets) -> None:
 
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused(data: bytes) -> None:
-    """With the error that the links count."""
+    """They raise the error that links count."""
     links = LinkSecrets()
     links.add("a1", SECRET)
 
@@ -94,7 +94,7 @@ def test_any_bytes_are_refused(data: bytes) -> None:
 
 
 def test_secrets_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The oldest is forgotten: links may end and begin for months."""
+    """The oldest one is discarded, because links may come and go for months."""
     monkeypatch.setattr(continuation, "MOST_LINKS", 3)
     links = LinkSecrets()
     for number in range(10):

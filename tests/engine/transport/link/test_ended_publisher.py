@@ -1,4 +1,4 @@
-"""Copies of a message over the link and over Zenoh count once, also after its publisher's end."""
+"""Copies over the link and over Zenoh count once, even after the publisher has ended."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["folder"]  # a fixture
 async def test_copies_that_zenoh_brings_after_the_end_of_a_publisher_are_left_out(
     profile: Any,
 ) -> None:
-    """Zenoh waits for acknowledgements, so it may be behind the link, which has said the last."""
+    """Zenoh waits for acknowledgements, and may lag behind the link, which has brought the end."""
     async with asyncio.timeout(20), two_nodes() as nodes:
         subscription = nodes.b.create_subscription(Int32, "n", None, profile)
         publisher = nodes.a.create_publisher(Int32, "n", profile)
@@ -32,7 +32,7 @@ async def test_copies_that_zenoh_brings_after_the_end_of_a_publisher_are_left_ou
         publisher.destroy()
         while subscription.get_publisher_count():
             await nodes.b.graph.changed()
-        await nodes.b.get_clock().sleep(0.05)  # its last word over the link
+        await nodes.b.get_clock().sleep(0.05)  # # the last message over the link
 
         for number in range(1, sent + 2):
             reader.deliver(Int32(data=number), gid, number, 0)
@@ -42,7 +42,7 @@ async def test_copies_that_zenoh_brings_after_the_end_of_a_publisher_are_left_ou
 
 
 async def test_a_publisher_that_has_ended_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A reader of publishers that come and go would remember more and more of them."""
+    """Otherwise memory would grow for a reader whose publishers come and go."""
     monkeypatch.setattr(subscriptions, "RECOVERY_S", 0.01)
     async with asyncio.timeout(20), two_nodes() as nodes:
         subscription = nodes.b.create_subscription(Int32, "n", None, 10)
@@ -58,7 +58,7 @@ async def test_a_publisher_that_has_ended_is_forgotten(monkeypatch: pytest.Monke
 
 
 async def publish_until_linked(publisher: Any, subscription: Any) -> int:
-    """Publish and receive until the link has them; return how many there were."""
+    """Publish and receive until the link carries the messages; return how many there were."""
     await publisher.wait_for_subscribers()
     sent = 0
     while not writer_of(publisher).linked:
@@ -69,6 +69,6 @@ async def publish_until_linked(publisher: Any, subscription: Any) -> int:
 
 
 def reader_of(node: Any) -> Any:
-    """Return the transport's part of the only subscription to /n."""
+    """Return the transport's side of the only subscription to /n."""
     (reader,) = [each for each in manager_of(node).readers.values() if each.endpoint.name == "/n"]
     return reader

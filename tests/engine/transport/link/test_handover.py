@@ -1,4 +1,4 @@
-"""A subscription changes its route in the middle of a stream: each message once, in order."""
+"""A subscription switches routes in mid-stream: each message arrives once and in order."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ GID = b"publisher".ljust(16)
 
 
 def endpoint(kind: EndpointKind, gid: bytes, profile: QoSProfile) -> EndpointInfo:
-    """Return one of the two endpoints, each in a context of its own."""
+    """Return one of the two endpoints, each in its own context."""
     node = NodeInfo(gid.hex(), 1, "node", "/")
     return EndpointInfo(kind, node, 1, "/n", "std_msgs/msg/Int32", "hash", profile, gid)
 
 
 class Registry:
-    """The links of a context without any link: time passes when the test says so."""
+    """The links of a context without any link; time advances only when the test says so."""
 
     def __init__(self) -> None:
         self.timers: list[Callable[[], None]] = []
@@ -44,7 +44,7 @@ class Registry:
 
 
 class Local:
-    """The subscription itself, which notes the numbers that are delivered."""
+    """The subscription itself, which records the numbers delivered."""
 
     def __init__(self, got: list[int], profile: QoSProfile) -> None:
         self.endpoint = endpoint(EndpointKind.SUBSCRIPTION, b"subscription".ljust(16), profile)
@@ -52,7 +52,7 @@ class Local:
         self._got = got
 
     def deliver(self, msg: bytes, *_: object) -> None:
-        """Take a message, whose bytes are its number."""
+        """Record a message, whose payload is its number."""
         self._got.append(int.from_bytes(msg))
 
     def reject(self, error: Exception) -> None:
@@ -60,26 +60,26 @@ class Local:
         raise error
 
     def note_alive(self, gid: bytes) -> None:
-        """Publishers here do not assert that they are alive."""
+        """Do nothing: publishers here do not assert liveliness."""
 
     @property
     def waiting(self) -> int:
-        """None."""
+        """Return 0: nothing waits."""
         return 0
 
     def has_room(self) -> bool:
-        """Have room always."""
+        """Return True: there is always room."""
         return True
 
     async def wait_for_room(self) -> None:
-        """Have room always."""
+        """Return at once: there is always room."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Have room always."""
+        """Call back at once: there is always room."""
 
 
 class HandedOver:
-    """The subscription's view of one remote publisher, and messages that are their numbers."""
+    """The subscription's view of one remote publisher, with messages that are their numbers."""
 
     def __init__(self, got: list[int], profile: QoSProfile | None = None) -> None:
         profile = QoSProfile(depth=10) if profile is None else profile
@@ -97,44 +97,44 @@ class HandedOver:
 
     @property
     def route(self) -> Route:
-        """Where the messages come from."""
+        """The route over which messages come."""
         return self.remote.route
 
     @property
     def last(self) -> int:
-        """The number that was delivered last."""
+        """The number delivered last."""
         return self.remote.last
 
     @property
     def waits(self) -> bool:
-        """Whether messages are held."""
+        """Whether messages are being held."""
         return self.remote.waits
 
     def from_zenoh(self, number: int) -> None:
-        """Let Zenoh bring a message."""
+        """Deliver a message over Zenoh."""
         self.reader.deliver(number.to_bytes(8), GID, number, 0)
 
     def from_link(self, number: int) -> None:
-        """Let the link bring a message."""
+        """Deliver a message over the link."""
         self.remote.from_link(number.to_bytes(8), number, 0, 0)
 
     def from_retransmit(self, number: int) -> None:
-        """Let a retransmitted message come."""
+        """Deliver a retransmitted message."""
         self.remote.from_other_route(number.to_bytes(8), Frame(Kind.DATA, number, 0, GID))
 
     def from_other_loop(self, number: int) -> None:
-        """Let the stop of a lease come past the link."""
+        """Deliver the stop of a lease past the link."""
         self.remote.from_other_route(number.to_bytes(8), Frame(Kind.STOP, number, 0, GID))
 
     def let_time_pass(self) -> None:
-        """Run the timers that are set now."""
+        """Run the timers set so far."""
         timers, self.registry.timers = self.registry.timers, []
         for call in timers:
             call()
 
 
 class Stream:
-    """A publisher, three routes that each keep the order, and a subscription at their end."""
+    """A publisher, three routes that each preserve order, and a subscription at the other end."""
 
     def __init__(self) -> None:
         self.published = 0
@@ -148,7 +148,7 @@ class Stream:
         self._unconfirmed: list[int] = []
 
     def publish(self) -> None:
-        """Send one message as a linked publisher does."""
+        """Send one message, as a linked publisher does."""
         self.published += 1
         if self._linked:
             self.link.append(("data", self.published))
@@ -157,17 +157,17 @@ class Stream:
             self.zenoh.append(self.published)
 
     def open(self) -> None:
-        """Open the link, after what the last one left was retransmitted."""
+        """Open the link, once the leftovers of the last one have been retransmitted."""
         if not self._linked and not self.link and not self.retransmit:
             self._linked = True
             self.link.append(("opened", self.published))
 
     def hear_unannounced(self) -> None:
-        """Publish over both routes from now on, for an unannounced subscription."""
+        """From now on publish over both routes, for an unannounced subscription."""
         self._needs_zenoh = True
 
     def lose_unannounced(self) -> None:
-        """Publish over the link alone, if the subscription has taken it."""
+        """Publish over the link only, if the subscription has accepted it."""
         self._needs_zenoh = not (self._linked and self.handover.route is Route.LINK)
 
     def confirm(self) -> None:
@@ -183,7 +183,7 @@ class Stream:
             self.lose_unannounced()
 
     def take_retransmitted(self) -> None:
-        """Deliver one retransmitted message, which is behind all of the link and its end."""
+        """Deliver one retransmitted message, which comes after the link and its end."""
         while self.link and self.retransmit:
             self.take_link()
         if self.retransmit:
@@ -206,7 +206,7 @@ class Stream:
             self.lose_unannounced()
 
     def end_link(self) -> None:
-        """Break the link: what is in it may be lost, and is retransmitted."""
+        """Break the link: frames in transit may be lost and are retransmitted."""
         if self._linked:
             self._linked = False
             self._needs_zenoh = True
@@ -216,13 +216,13 @@ class Stream:
             self._unconfirmed.clear()
 
     def lose_what_is_on_its_way(self) -> None:
-        """Break the link, and lose all that is in it."""
+        """Break the link, and lose all frames in transit."""
         if self._linked:
             self.link.clear()
             self.end_link()
 
     def finish(self) -> None:
-        """Deliver everything, with one more message to end a hand-over."""
+        """Deliver everything, plus one more message to end a hand-over."""
         self.publish()
         for take, route in (
             (self.take_zenoh, self.zenoh),
@@ -254,7 +254,7 @@ STEPS: list[Callable[[Stream], None]] = [
 def test_each_message_comes_once_and_in_order_whatever_the_routes_do(
     steps: list[Callable[[Stream], None]],
 ) -> None:
-    """Links come up and end at any moment of a stream, and any route may be the slower one."""
+    """Links come up and go down at any point of a stream, and any route may be the slower one."""
     stream = Stream()
     for step in steps:
         step(stream)
@@ -263,14 +263,14 @@ def test_each_message_comes_once_and_in_order_whatever_the_routes_do(
 
 
 def test_a_publisher_that_has_sent_nothing_is_taken_from_the_link_at_once() -> None:
-    """Its first message has no reason to wait for Zenoh."""
+    """There is no reason for its first message to wait for Zenoh."""
     handover = HandedOver([])
     handover.opened(0)
     assert handover.route is Route.LINK
 
 
 def test_the_last_message_before_the_link_shows_that_nothing_is_under_way() -> None:
-    """Then nothing has to wait for the next one."""
+    """Then there is no need to wait for the next one."""
     got: list[int] = []
     handover = HandedOver(got)
     handover.opened(5)
@@ -294,7 +294,7 @@ def test_what_is_held_comes_out_when_zenoh_stays_silent() -> None:
 
 
 def test_the_number_of_held_messages_is_bounded() -> None:
-    """Memory has a bound, whatever Zenoh does."""
+    """Memory stays bounded, whatever Zenoh does."""
     got: list[int] = []
     handover = HandedOver(got)
     handover.opened(1)
@@ -307,7 +307,7 @@ def test_the_number_of_held_messages_is_bounded() -> None:
 
 
 def test_copies_that_zenoh_brings_ahead_of_the_link_are_bounded() -> None:
-    """They all come over the link as well, or are retransmitted when it ends."""
+    """All of them also come over the link, or are retransmitted when it ends."""
     got: list[int] = []
     handover = HandedOver(got)
     handover.opened(0)
@@ -320,7 +320,7 @@ def test_copies_that_zenoh_brings_ahead_of_the_link_are_bounded() -> None:
 
 
 def test_after_a_link_has_ended_what_came_over_it_does_not_come_again() -> None:
-    """Zenoh may still bring a copy from the time when both routes were used."""
+    """Zenoh may still deliver a copy from the time when both routes were in use."""
     got: list[int] = []
     handover = HandedOver(got)
     handover.opened(0)
@@ -348,7 +348,7 @@ def test_what_was_lost_for_good_is_waited_for_only_until_it_is_given_up() -> Non
 
 
 def test_what_comes_over_a_link_for_another_reader_is_left_to_zenoh() -> None:
-    """Before it is opened, older messages may still be on their way over Zenoh."""
+    """Before the link is opened, older messages may still be in transit over Zenoh."""
     got: list[int] = []
     handover = HandedOver(got)
     handover.from_link(7)
@@ -357,7 +357,7 @@ def test_what_comes_over_a_link_for_another_reader_is_left_to_zenoh() -> None:
 
 
 def test_what_zenoh_still_brings_when_a_publisher_has_gone_is_delivered() -> None:
-    """The link came up in the middle of a burst, and its last frame overtakes all of the burst."""
+    """The link came up in the middle of a burst, and its last frame overtakes the whole burst."""
     got: list[int] = []
     handover = HandedOver(got)
     for number in range(1, 4):

@@ -1,4 +1,4 @@
-"""Calls within the link transport go down, and so do the types that its modules name."""
+"""Calls within the link transport go down the layers, as do the types that its modules name."""
 
 from __future__ import annotations
 

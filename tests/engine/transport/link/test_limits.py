@@ -1,4 +1,4 @@
-"""Bounds on what another process can make this one keep, and retries of what has failed."""
+"""Limits on what another process can make this one store, and retries after failures."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ __all__ = ["folder"]  # a fixture
 
 
 async def dialled(folder: Path, context: Context) -> socket.socket:
-    """Return a socket to a context, without a Hello."""
+    """Return a socket to a context that has not sent a Hello."""
     sock = socket.socket(socket.AF_UNIX)
     sock.setblocking(False)
     await asyncio.get_running_loop().sock_connect(sock, str(folder / f"{context.participant}.sock"))
@@ -79,7 +79,7 @@ async def until_closed(sock: socket.socket) -> None:
 async def test_a_client_without_a_hello_is_disconnected(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A descriptor is kept for a few seconds, not for ever."""
+    """Its descriptor is kept for a few seconds, not forever."""
     monkeypatch.setattr(manager, "HELLO_S", 0.05)
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
@@ -87,17 +87,17 @@ async def test_a_client_without_a_hello_is_disconnected(
 
 
 async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> None:
-    """Two hundred of them leave descriptors for everything else."""
+    """Two hundred of them leave enough descriptors for everything else."""
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with ExitStack() as stack:
             socks = []
             for _ in range(manager.MAX_OPENING + 20):
                 socks.append(stack.enter_context(closing(await dialled(folder, node.context))))
-                await checkpoint()  # or the backlog is full
+                await checkpoint()  # # otherwise the backlog is full
             for sock in socks[:20]:
                 await until_closed(sock)
             for sock in socks[20:]:
-                assert sock.recv(1 << 16)  # a Hello, and then neither more nor an end
+                assert sock.recv(1 << 16)  # # a Hello, then neither more data nor an end
                 with pytest.raises(BlockingIOError):
                     sock.recv(1)
 
@@ -105,7 +105,7 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
 async def test_a_context_that_was_dialled_may_take_as_long_as_it_likes(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 100 that start at once, many are busy: given up, they were dialled again much later."""
+    """When 100 start at once, many are busy; giving up meant that they were dialled much later."""
     monkeypatch.setattr(manager, "HELLO_S", 0.0)
     monkeypatch.setattr(manager, "MAX_OPENING", 0)
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
@@ -124,12 +124,12 @@ async def test_a_context_that_was_dialled_may_take_as_long_as_it_likes(
             for busy in listening:
                 sock = stack.enter_context(closing(busy.accept()[0]))
                 assert sock.recv(1 << 16)
-                with pytest.raises(BlockingIOError):  # it was not given up
+                with pytest.raises(BlockingIOError):  # # the connection was not given up
                     sock.recv(1, socket.MSG_DONTWAIT)
 
 
 def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: Path) -> None:
-    """Of 100 that start at once, each would be dialled by all others, and have to accept that."""
+    """When 100 start at once, each would otherwise be dialled by all others."""
     socket_folder(os.environ)
     living = Listener(folder, "a1")
     try:
@@ -143,7 +143,7 @@ def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: 
 async def test_a_long_frame_in_place_of_the_hello_is_refused(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An unknown client must not make a process hold megabytes, as long as a Hello may take."""
+    """An unknown client must not make a process hold megabytes for the duration of a Hello."""
     monkeypatch.setattr(manager, "HELLO_S", 3600.0)
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
@@ -158,7 +158,7 @@ async def test_a_long_frame_in_place_of_the_hello_is_refused(
 async def test_the_memory_for_incomplete_frames_is_bounded(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The bound is for all links together; the largest one ends, and the others go on."""
+    """The limit covers all links together; the largest is closed, and the others continue."""
     monkeypatch.setattr(manager, "MAX_HELD", 10 << 20)
     loop = asyncio.get_running_loop()
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
@@ -194,7 +194,7 @@ async def test_a_client_that_reads_no_responses_is_disconnected(
 async def test_what_is_kept_for_a_reader_that_confirms_nothing_is_bounded(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It has announced confirmations, and sends none."""
+    """It has announced confirmations, but sends none."""
     monkeypatch.setattr(send_queue, "MAX_UNCONFIRMED", 200)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -208,7 +208,7 @@ async def test_what_is_kept_for_a_reader_that_confirms_nothing_is_bounded(
 async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A frozen one would have hundreds of large messages waiting for it."""
+    """Otherwise hundreds of large messages would be waiting for a frozen process."""
     monkeypatch.setattr(connection, "LENT_PIECES", 3)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -225,7 +225,7 @@ async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
 
 
 async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
-    """What its readers had not confirmed was kept for ever."""
+    """Payloads that its readers had not confirmed used to be kept forever."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -233,7 +233,7 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
         nodes.b.create_subscription(Image, "images", None, 10)
         await numbers.go_until(lambda: writer_of(publisher).linked)
         publisher.publish(Image(height=1, width=600_000, data=bytes(600_000)))
-        publisher.destroy()  # before any confirmation can have come
+        publisher.destroy()  # # before any confirmation can have arrived
         assert manager_of(nodes.a)._ending
         while manager_of(nodes.a)._ending:
             await checkpoint()
@@ -245,7 +245,7 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
 async def test_a_context_that_could_not_be_dialled_is_dialled_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A full backlog, or a descriptor too few, passes."""
+    """A full backlog or a lack of descriptors is temporary."""
     failures = 3
     dial = Listener.dial
 
@@ -264,7 +264,7 @@ async def test_a_context_that_could_not_be_dialled_is_dialled_again(
 async def test_a_context_that_did_not_answer_is_dialled_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It was frozen when it was dialled, and refused when it came back."""
+    """It was frozen when it was dialled, and was refused when it resumed."""
     monkeypatch.setattr(manager, "MAX_OPENING", 0)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -279,7 +279,7 @@ async def test_a_context_that_did_not_answer_is_dialled_again(
 async def test_a_context_whose_advertisement_flaps_is_dialled_once(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """At the start tokens come and go; the second socket was refused with a warning."""
+    """Tokens come and go at startup; the second socket used to be refused with a warning."""
     attempts: list[str] = []
     dial = Listener.dial
 
@@ -291,7 +291,7 @@ async def test_a_context_whose_advertisement_flaps_is_dialled_once(
             (dialling,) = (one for one in managers if one.participant != participant)
             own = Advertisement.own(participant)
 
-            def flap() -> None:  # while neither Hello has come
+            def flap() -> None:  # # before either Hello has arrived
                 dialling.on_advertisement(own, False)
                 dialling.on_advertisement(own, True)
 
@@ -308,7 +308,7 @@ async def test_a_context_whose_advertisement_flaps_is_dialled_once(
 async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
     folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Its new socket can be read before the end of the old one."""
+    """Its new socket may become readable before the end of the old one is noticed."""
     loop = asyncio.get_running_loop()
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as first:
@@ -327,7 +327,7 @@ async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
 
 
 async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() -> None:
-    """Or a reader that takes a large message slowly would be given up when the context closes."""
+    """Otherwise a slow reader of a large message would be given up when the context closes."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -347,7 +347,7 @@ async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() ->
 async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The reader does not get its last message, nor those that were to go in the same batch."""
+    """The reader gets neither its last message nor those meant for the same batch."""
     monkeypatch.setattr(_connection, "STALLED_S", 0.01)
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 20_000)
@@ -362,7 +362,7 @@ async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
 
         (warning,) = [each for each in caplog.records if "dropped the last" in each.message]
         assert isinstance(warning.args, tuple)
-        loop.remove_writer(fd_of(link))  # nothing more is sent, as after the end of the process
+        loop.remove_writer(fd_of(link))  # # nothing more is sent, as after the end of a process
         while read(other):
             pass
         numbers.subscription.destroy()
@@ -379,7 +379,7 @@ async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
 def test_a_folder_is_refused_whose_path_leaves_no_room_for_the_name_of_a_socket(
     size: int, folder: Path
 ) -> None:
-    """The name of a longer id would not fit, though that of this context may."""
+    """A longer id would not fit in the socket's name, even if this context's id does."""
     runtime = folder.parent / ("x" * (size - len(str(folder)) - 1))
     runtime.mkdir()
     environ = {"XDG_RUNTIME_DIR": str(runtime)}
@@ -396,7 +396,7 @@ def test_a_folder_is_refused_whose_path_leaves_no_room_for_the_name_of_a_socket(
 async def test_a_folder_with_a_long_path_is_reported_and_everything_goes_over_zenoh(
     folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Links are missing then, and nothing else says why."""
+    """Without the report, nothing would explain why there are no links."""
     runtime = folder.parent / ("x" * 100)
     runtime.mkdir()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(runtime))
@@ -408,7 +408,7 @@ async def test_a_folder_with_a_long_path_is_reported_and_everything_goes_over_ze
 
 
 def test_a_socket_that_was_never_finished_is_removed(tmp_path: Path) -> None:
-    """Its process was killed between two steps; one that is being made is left alone."""
+    """Its process was killed between two steps; one being created is left alone."""
     old, new = tmp_path / "old.new", tmp_path / "new.new"
     for path in (old, new):
         path.touch()

@@ -64,7 +64,7 @@ def number_of(sample: Any) -> int:
 
 
 async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
-    """Each message arrives once and in order, and Zenoh is not used afterwards."""
+    """Each message arrives once and in order; after that, Zenoh is not used."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -76,9 +76,9 @@ async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
 async def test_a_message_that_is_held_has_the_time_of_its_arrival(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Not that of its release: rates that are measured would be those of the hand-over."""
+    """Not the time of its release, or measured rates would be those of the hand-over."""
     monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.2)
-    monkeypatch.setattr(LinkReader, "deliver", lambda *_: None)  # Zenoh brings nothing
+    monkeypatch.setattr(LinkReader, "deliver", lambda *_: None)  # # Zenoh delivers nothing
     async with two_nodes() as nodes:
         infos: list[MessageInfo] = []
         publisher = nodes.a.create_publisher(Int32, "n", 100)
@@ -88,7 +88,7 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
         nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
         await publisher.wait_for_subscribers(2)
         await until(lambda: manager_of(nodes.a).links)
-        while not infos:  # a few at a time: when there are too many, none is held
+        while not infos:  # # a few at a time: if there are too many, none is held
             publisher.publish(Int32())
             await asyncio.to_thread(threading.Event().wait, 0.005)
 
@@ -96,7 +96,7 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
 
 
 async def test_every_kind_of_reader_gets_each_message_once() -> None:
-    """One over the link, one in the process, one that is a bare Zenoh session without tokens."""
+    """One over the link, one in the same process, and one bare Zenoh session without tokens."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         beside = nodes.a.create_subscription(Int32, "n", None, 1000)
@@ -123,7 +123,7 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
 async def test_what_continues_a_link_after_its_end_is_not_called_a_fault(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """A context ends its links first, and the other end goes on over Zenoh until that ends, too."""
+    """A context closes its links first; the other end continues over Zenoh for a moment."""
     async with two_nodes() as nodes:
         await Counting(nodes).until_linked()
         ended = manager_of(nodes.b)
@@ -135,7 +135,7 @@ async def test_what_continues_a_link_after_its_end_is_not_called_a_fault(
 
 
 async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
-    """Also what took both routes, and what was sent before an unannounced peer subscribed."""
+    """Including what took both routes, and what was sent before an unannounced peer subscribed."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 10_000)
         await numbers.until_linked()
@@ -168,7 +168,7 @@ async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
 
 
 async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_is_there() -> None:
-    """Either end may close it, and no message is lost."""
+    """Either end may close the link, and no message is lost."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         for node in nodes:
@@ -178,7 +178,7 @@ async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_i
             await numbers.go(20)
             while link in (
                 manager_of(n).linked(p) for n in nodes for p in manager_of(n).links
-            ):  # the other end has not heard yet
+            ):  # # the other end has not noticed yet
                 await numbers.go()
         await numbers.until_linked()
         assert numbers.subscription.stats.lost == 0
@@ -188,7 +188,7 @@ async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_i
 async def test_a_filtered_stream_loses_nothing_that_passes_when_the_link_ends(
     profile: QoSProfile,
 ) -> None:
-    """What does not pass is sent as well, and counts as received where messages are confirmed."""
+    """What the filter rejects is sent too, and counts as received where messages are confirmed."""
     async with two_nodes() as nodes:
         subscription = nodes.b.create_subscription(
             Int32, "n", None, profile, content_filter_options=ContentFilterOptions("data > 0")
@@ -219,7 +219,7 @@ async def test_a_filtered_stream_loses_nothing_that_passes_when_the_link_ends(
 
 
 async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_write() -> None:
-    """An event loop may tell once, and no more, of a socket whose other end left data unread."""
+    """An event loop may report only once that the other end closed the socket with data unread."""
     async with two_nodes() as nodes:
         unconfirmed = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
         numbers = Counting(nodes, unconfirmed)
@@ -250,7 +250,7 @@ async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_wr
 async def test_malformed_data_ends_the_link_and_not_the_stream(
     garbage: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Both ends go on over Zenoh, and a warning says why."""
+    """Both ends continue over Zenoh, and a warning gives the reason."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -267,7 +267,7 @@ async def test_malformed_data_ends_the_link_and_not_the_stream(
 async def test_what_a_link_brings_and_nobody_can_read_has_a_number_and_a_line(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """The other process may have another definition of the type: the reader has to be told."""
+    """The other process may have another definition of the type; the reader has to know."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         nodes.b.create_service(AddTwoInts, "add", lambda request, response: response)
@@ -299,7 +299,7 @@ async def test_retransmissions_that_cannot_be_read_are_reported_once_in_a_while(
 
 
 async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder: Path) -> None:
-    """Silence, garbage, or a frame before the Hello: none of it becomes a link."""
+    """Neither silence, garbage, nor a frame before the Hello becomes a link."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         path = folder / f"{nodes.b.context.participant}.sock"
@@ -313,7 +313,7 @@ async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder
 
 
 async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The process at the other end of the socket is not one of this user."""
+    """The process at the other end of the socket belongs to another user."""
     monkeypatch.setattr(listener, "is_own_user", lambda _: False)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -323,17 +323,17 @@ async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def open_to_others(folder: Path) -> None:
-    """Make the folder one that others can enter."""
+    """Make the folder accessible to others."""
     folder.mkdir(mode=0o755)
 
 
 def a_file(folder: Path) -> None:
-    """Put a file in the folder's place."""
+    """Put a file in place of the folder."""
     folder.touch()
 
 
 def no_parent(folder: Path) -> None:
-    """Remove the folder that it should be made in."""
+    """Remove the parent of the folder."""
     folder.parent.rmdir()
 
 
@@ -341,7 +341,7 @@ def no_parent(folder: Path) -> None:
 async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
     spoil: Any, folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A warning says what is wrong with it."""
+    """A warning says what is wrong with the folder."""
     spoil(folder)
     with caplog.at_level(logging.WARNING, "aionode.transport.link"):
         async with two_nodes() as nodes:
@@ -353,7 +353,7 @@ async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
 
 
 async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() -> None:
-    """A full socket bounds what waits for it: the depth of the publisher."""
+    """While the socket is full, at most the publisher's depth of messages wait for it."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 10)
         await numbers.until_linked()
@@ -372,7 +372,7 @@ async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() ->
 
 
 async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_loses_nothing() -> None:
-    """Back-pressure: `drain` waits for it, and `publish` refuses past the bound."""
+    """`drain` waits for the reader, and `publish` refuses messages beyond the limit."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, KEEP_ALL)
         await numbers.until_linked()
@@ -382,7 +382,7 @@ async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_lose
             numbers.publish()
             total += 1
             if not total % 1000:
-                await asyncio.to_thread(lambda: None)  # the loop goes round meanwhile
+                await asyncio.to_thread(lambda: None)  # # the loop runs meanwhile
         assert not writer_of(numbers.publisher).has_room()
         drained = asyncio.get_running_loop().create_future()
 
@@ -399,7 +399,7 @@ async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_lose
 
 
 async def test_keep_all_loses_nothing_while_the_link_comes_up() -> None:
-    """However far Zenoh is behind when the reader asks for the link."""
+    """However far behind Zenoh is when the reader asks for the link."""
     async with two_nodes() as nodes:
         heard: list[int] = []
         nodes.b.create_subscription(Int32, "n", lambda msg: heard.append(msg.data), KEEP_ALL)
@@ -444,7 +444,7 @@ async def test_a_call_takes_the_link_and_ends_with_it() -> None:
 
 
 async def test_an_action_takes_the_link() -> None:
-    """Its services and its feedback, in order, and the result after them."""
+    """Its services and feedback come in order, and the result after them."""
     async with two_nodes() as nodes:
 
         async def execute(goal: Any) -> Any:
@@ -467,7 +467,7 @@ async def test_an_action_takes_the_link() -> None:
 
 
 async def fails(awaitable: Any) -> Exception | None:
-    """Return what it raises."""
+    """Return the exception that it raises."""
     try:
         await awaitable
     except ServiceUnavailableError as error:
@@ -476,7 +476,7 @@ async def fails(awaitable: Any) -> Exception | None:
 
 
 async def test_a_server_in_a_bare_session_is_asked_over_zenoh() -> None:
-    """The links do not reach it, and a query over Zenoh reaches all."""
+    """Links do not reach it, but a query over Zenoh reaches every server."""
     async with two_nodes() as nodes:
         served = []
 
@@ -500,18 +500,18 @@ async def test_a_server_in_a_bare_session_is_asked_over_zenoh() -> None:
 
 
 def image(number: int) -> Image:
-    """Return an image of one colour."""
+    """Return an image of a single colour."""
     return Image(height=600, width=1000, step=1000, data=bytes([number]) * 600_000)
 
 
 def memory_files() -> int:
-    """Return how many files in memory this process has open."""
+    """Return how many in-memory files this process has open."""
     files = list(Path("/proc/self/fd").iterdir())
     return sum("memfd:" in str(file.readlink()) for file in files if file.is_symlink())
 
 
 async def linked_images(nodes: Two) -> tuple[Any, Any]:
-    """Return a publisher of images and its reader, which has the link from the first image on."""
+    """Return a publisher of images and its reader, linked from the first image on."""
     numbers = Counting(nodes)
     await numbers.until_linked()
     publisher = nodes.a.create_publisher(Image, "images", 10)
@@ -521,10 +521,10 @@ async def linked_images(nodes: Two) -> tuple[Any, Any]:
 
 
 async def test_images_come_in_shared_memory_that_is_used_again() -> None:
-    """Read in place, unchanged as long as anything refers to them, and released afterwards."""
+    """They are read in place, unchanged while anything refers to them, and released afterwards."""
     async with two_nodes() as nodes:
         publisher, subscription = await linked_images(nodes)
-        assert not writer_of(publisher).routes.update()  # and Zenoh is spared
+        assert not writer_of(publisher).routes.update()  # # and Zenoh is not used
         kept = []
         for number in range(1, 6):
             publisher.publish(image(number))
@@ -536,7 +536,7 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
         kept.clear()
         gc.collect()
         while lent:
-            await checkpoint()  # the receiver says so in its next turns
+            await checkpoint()  # # the receiver reports it in its next turns of the event loop
         files = memory_files()
         publisher.publish(image(7))
         last = await subscription.receive()
@@ -547,7 +547,7 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
 async def test_without_descriptors_large_payloads_go_through_the_stream(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It is slower, and nothing is lost."""
+    """It is slower, but nothing is lost."""
 
     def exhausted(*_: Any) -> int:
         raise OSError(24, "Too many open files")
@@ -564,11 +564,11 @@ async def test_without_descriptors_large_payloads_go_through_the_stream(
 async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """The system drops the descriptor on the way in, and with it the place of the image."""
+    """The system drops the descriptor on receipt, and with it the location of the image."""
     async with two_nodes() as nodes:
         publisher, subscription = await linked_images(nodes)
         pool = manager_of(nodes.a).pool
-        fresh = pool.filled(bytes(600_000))  # which the receiver has no descriptor of
+        fresh = pool.filled(bytes(600_000))  # # for which the receiver has no descriptor
         assert fresh is not None
         pool.release(fresh)
         limits = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -589,7 +589,7 @@ async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothi
     assert "too many files are open" in caplog.text
 
 
-# What is left behind
+# # Leftovers
 
 
 def descriptors() -> int:
@@ -603,11 +603,11 @@ def sockets(folder: Path) -> int:
 
 
 async def test_nothing_is_left_behind(folder: Path) -> None:
-    """No descriptor and no socket.
+    """Neither a descriptor nor a socket.
 
-    Zenoh closes its shared memory in a thread of its own, a moment after the session.
+    Zenoh closes its shared memory in another thread, a moment after the session.
     """
-    async with two_nodes():  # what is opened once for all
+    async with two_nodes():  # # opened once and kept
         pass
     before = descriptors()
     async with two_nodes() as nodes:
@@ -635,7 +635,7 @@ async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
 
 
 def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The variable decides, unless the argument is given."""
+    """The variable decides unless the argument is given."""
 
     def linked(**options: Any) -> bool:
         return isinstance(Context(**options).transports[1], LinkTransport)
@@ -654,7 +654,7 @@ def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPat
 
 
 async def test_contexts_with_and_without_links_hear_each_other() -> None:
-    """One is an older release, or has links switched off."""
+    """One of them is an older release, or has links disabled."""
     async with two_nodes(links=(True, False)) as nodes:
         numbers = Counting(nodes)
         await numbers.publisher.wait_for_subscribers()

@@ -1,4 +1,4 @@
-"""The number of objects in a subscription: each is memory, and a place to look for a reader."""
+"""The number of objects in a subscription, each of which costs memory."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 __all__ = ["folder"]
 
-VALUES = {"Duration", "QoSProfile"}  # of the profile, which every endpoint has
+VALUES = {"Duration", "QoSProfile"}  # # part of the profile, which every endpoint has
 
 
 def own_objects(root: object, shared: Iterable[object]) -> Counter[str]:
-    """Return how many objects of aionode's classes only `root` leads to, by class."""
+    """Return how many objects of aionode's classes are reachable only from `root`, by class."""
     seen = {id(one) for one in shared}
     found: Counter[str] = Counter()
     ahead: list[Any] = [root]
@@ -37,12 +37,12 @@ def own_objects(root: object, shared: Iterable[object]) -> Counter[str]:
 
 
 async def linked_subscription(nodes: Two) -> Counter[str]:
-    """Return what a subscription is made of that hears one publisher over a link."""
+    """Return the objects of a subscription that receives from one publisher over a link."""
     first = Counting(nodes, topic="first")  # for which the link is made
     await first.until_linked()
     publisher = nodes.a.create_publisher(Int32, "second", 10)
     got: list[Int32] = []
-    gc.unfreeze()  # what tests/conftest.py has frozen is not among the objects
+    gc.unfreeze()  # # objects frozen by tests/conftest.py are not counted
     gc.collect()
     shared = gc.get_objects()
     gc.freeze()
@@ -51,12 +51,12 @@ async def linked_subscription(nodes: Two) -> Counter[str]:
     while not (writer_of(publisher).linked and got):
         publisher.publish(Int32())
         await first.go()
-    await until(lambda: not len(reader_of(subscription)))  # what waits is no part of it
+    await until(lambda: not len(reader_of(subscription)))  # # waiting messages are not part of it
     return own_objects(subscription, shared)
 
 
 async def test_a_linked_subscription_is_made_of_few_objects() -> None:
-    """What a message does not need is made when it is needed.
+    """Objects that messages do not need are created only on demand.
 
     There are no histograms before something is recorded, no monitor without a policy, and no entry
     of the graph beside the endpoint. Zenoh's part is what the subscription has without a link.

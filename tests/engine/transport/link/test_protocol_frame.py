@@ -1,4 +1,4 @@
-"""Frames are received as they were sent, and malformed data is detected."""
+"""Frames arrive as they were sent, and malformed data is detected."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def packed(one: Frame) -> bytes:
 
 
 def pieces_of(stream: bytes, cuts: list[int]) -> list[bytes]:
-    """Return the stream cut at these places."""
+    """Return the stream cut at these offsets."""
     places = [0, *sorted(cut % (len(stream) + 1) for cut in cuts), len(stream)]
     return [stream[a:b] for a, b in itertools.pairwise(places)]
 
@@ -46,7 +46,7 @@ def pieces_of(stream: bytes, cuts: list[int]) -> list[bytes]:
 def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
     frames: list[Frame], cuts: list[int]
 ) -> None:
-    """A socket hands over any number of bytes."""
+    """A socket may return any number of bytes at a time."""
     parser = FrameParser()
     stream = b"".join(packed(one) for one in frames)
     found = [one for piece in pieces_of(stream, cuts) for one in parser.feed(piece)]
@@ -59,7 +59,7 @@ def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
 def test_messages_go_straight_to_their_handlers_in_the_order_of_all_frames(
     frames: list[Frame], cuts: list[int]
 ) -> None:
-    """The short way of messages and the long way of everything else share one stream."""
+    """Messages take a fast path and everything else a slow one, but both share one stream."""
     parser = FrameParser()
     gid = bytes(16)
     frames = [
@@ -79,7 +79,7 @@ def test_messages_go_straight_to_their_handlers_in_the_order_of_all_frames(
 
 
 def test_messages_that_nothing_hears_are_left_out() -> None:
-    """They were sent before the publisher's process knew that the subscription was destroyed."""
+    """They were sent before the publisher's process learned that the subscription was destroyed."""
     data = packed(Frame(Kind.DATA, 1, 2, bytes(16), b"one"))
     parser = FrameParser()
     assert parser.take_messages(data + data[:-1], {}, 0) == data[:-1]
@@ -87,7 +87,7 @@ def test_messages_that_nothing_hears_are_left_out() -> None:
 
 @given(ONE, st.data())
 def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
-    """A peer that dies in the middle of a frame has not sent it."""
+    """A frame cut off by the death of its sender counts as not sent."""
     whole = packed(one)
     cut = data.draw(st.integers(0, len(whole) - 1))
     parser = FrameParser()
@@ -99,7 +99,7 @@ def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=4))
 @settings(max_examples=settings().max_examples * 2)
 def test_malformed_data_is_an_error_or_incomplete(stream: bytes, cuts: list[int]) -> None:
-    """Nothing else may come out of it, whatever the other end sends."""
+    """Nothing else may come of it, whatever the other end sends."""
     parser = FrameParser()
     try:
         for piece in pieces_of(stream, cuts):
@@ -110,7 +110,7 @@ def test_malformed_data_is_an_error_or_incomplete(stream: bytes, cuts: list[int]
 
 @pytest.mark.parametrize("offset", [4, 5, 6, 7], ids=["kind", "flags", "mark", "mark"])
 def test_a_wrong_byte_in_the_header_is_noticed(offset: int) -> None:
-    """Otherwise the receiver would misread what follows."""
+    """Otherwise the receiver would misread everything after it."""
     header = bytearray(packed(Frame(Kind.DATA)))
     header[offset] ^= 0xF0
     with pytest.raises(FrameError):
@@ -118,7 +118,7 @@ def test_a_wrong_byte_in_the_header_is_noticed(offset: int) -> None:
 
 
 def test_a_wrong_length_is_noticed_before_memory_is_taken_for_it() -> None:
-    """A length of gigabytes is garbage: they would never come."""
+    """A length of gigabytes is garbage: that much data would never come."""
     header = bytearray(packed(Frame(Kind.DATA)))
     header[:4] = (protocol.MAX_INLINE + 1).to_bytes(4, "little")
     with pytest.raises(FrameError):
@@ -126,19 +126,19 @@ def test_a_wrong_length_is_noticed_before_memory_is_taken_for_it() -> None:
 
 
 def test_what_does_not_fit_is_not_packed() -> None:
-    """The other end would end the link."""
+    """Otherwise the other end would close the link."""
     with pytest.raises(FrameError):
         protocol.pack(Kind.DATA, 0, 0, bytes(16), bytes(protocol.MAX_INLINE + 1))
 
 
 @given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
 def test_a_buffer_reference_comes_out_as_it_went_in(number: int, size: int) -> None:
-    """Another buffer would be another message."""
+    """Another buffer would mean another message."""
     assert BufferRef.unpack(BufferRef(number, size).pack()) == (number, size)
 
 
 @given(st.binary(max_size=40).filter(lambda data: len(data) != 16))
 def test_what_is_no_buffer_reference_is_refused(data: bytes) -> None:
-    """A buffer is not chosen at random."""
+    """A wrong reference must not select some buffer at random."""
     with pytest.raises(FrameError):
         BufferRef.unpack(data)

@@ -1,4 +1,4 @@
-"""Linked nodes beside a router: each message goes once, and sessions behind the router hear all."""
+"""Linked nodes beside a router: messages go once, and sessions behind the router get all."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
 
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The router is asked at once, and again at once."""
+    """Query the router at once, without waiting between queries."""
     monkeypatch.setattr(router_matching, "SETTLE_S", 0.01)
     monkeypatch.setattr(router_matching, "AGAIN_S", 0.01)
 
 
 @asynccontextmanager
 async def router(settings: dict[str, Any] | None = None) -> AsyncIterator[zenoh.Session]:
-    """A router as that of ROS, at the port of this test; or one of our own with `settings`."""
+    """A router like that of ROS, at the port of this test; or one of aionode's with `settings`."""
     if settings is None:
         session = await asyncio.to_thread(ros_router)
     else:
@@ -56,7 +56,7 @@ async def router(settings: dict[str, Any] | None = None) -> AsyncIterator[zenoh.
 
 
 def here() -> str:
-    """Return the port of the router of this machine."""
+    """Return the port of this machine's router."""
     return os.environ["AIONODE_ROUTER_PORT"]
 
 
@@ -66,7 +66,7 @@ def number_of(sample: Any) -> int:
 
 
 class Linked:
-    """Two linked nodes, and what the publisher's end of both routes hands to Zenoh."""
+    """Two linked nodes, and what the publisher's end of both routes passes to Zenoh."""
 
     def __init__(self, nodes: Two, numbers: Counting, monkeypatch: pytest.MonkeyPatch) -> None:
         self.nodes = nodes
@@ -84,26 +84,26 @@ class Linked:
 
     @property
     def matching(self) -> router_matching.RouterMatching:
-        """What the publisher's context knows of its router."""
+        """What the publisher's context knows about its router."""
         zenoh_transport: Any = transport_of(self.nodes.a).zenoh
         return zenoh_transport._router_matching  # type: ignore[no-any-return]  # it is private
 
     @property
     def router(self) -> router_matching.RouterSession:
-        """The second session, with the router alone."""
+        """The second session, which is connected to the router only."""
         (session,) = self.matching._routers.values()
         return session
 
     async def until_it_needs_zenoh(self, needed: bool) -> None:
-        """Go on until messages go to Zenoh as well, or do not."""
+        """Publish until messages go to Zenoh as well, or until they no longer do."""
         await self.numbers.go_until(
             lambda: writer_of(self.numbers.publisher).routes.update() == needed
         )
 
     async def until_zenoh_knows_others(self) -> None:
-        """Wait until the session that sends knows of a subscriber to all topics of the domain.
+        """Wait until the sending session knows of a subscriber to all topics of the domain.
 
-        The router tells the second session and this one by themselves.
+        The router informs the second session and this one separately.
         """
         zenoh_transport: Any = transport_of(self.nodes.a).zenoh
         publisher = zenoh_transport.session_state.session.declare_publisher(f"{DOMAIN_ID}/any")
@@ -113,7 +113,7 @@ class Linked:
 
 @asynccontextmanager
 async def linked(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Linked]:
-    """Two nodes whose messages take the link, and nothing else."""
+    """Two nodes whose messages take only the link."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -125,7 +125,7 @@ async def linked(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Linked]:
 async def test_linked_readers_beside_a_router_get_each_message_over_the_link_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The copy over Zenoh, which they drop, costs more than half of what the link costs."""
+    """The copy over Zenoh, which they would drop, costs more than half of what the link costs."""
     async with router(), linked(monkeypatch) as both:
         before = both.over_zenoh
         await both.numbers.go(100)
@@ -138,7 +138,7 @@ async def test_linked_readers_beside_a_router_get_each_message_over_the_link_alo
 async def test_a_plain_subscriber_behind_a_router_gets_the_next_message(
     where: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As soon as it subscribes, and each once, as the linked reader does; and then none any more.
+    """As soon as it subscribes, it gets each message once, as the linked reader does.
 
     It announces nothing, and cannot be seen from here.
     """
@@ -170,7 +170,7 @@ async def test_a_plain_subscriber_behind_a_router_gets_the_next_message(
 async def test_a_router_that_cannot_tell_who_listens_is_taken_to_have_listeners(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The session with it is cut; then both routes are used until there is a new one."""
+    """The session with it is cut; both routes are then used until there is a new one."""
     async with router(), linked(monkeypatch) as both:
         before = both.router
         assert before.session is not None
@@ -182,7 +182,7 @@ async def test_a_router_that_cannot_tell_who_listens_is_taken_to_have_listeners(
 
 
 async def test_a_router_that_comes_back_is_asked_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is another one, behind which others may listen."""
+    """It is a different one, behind which other sessions may subscribe."""
     async with router(), linked(monkeypatch) as both:
         pass
     async with two_nodes() as nodes:
@@ -201,7 +201,7 @@ async def test_a_router_that_comes_back_is_asked_anew(monkeypatch: pytest.Monkey
 async def test_a_stream_whose_link_ends_beside_a_router_loses_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The subscription is subscribed over Zenoh all the while."""
+    """The subscription stays subscribed over Zenoh all the time."""
     async with router(), linked(monkeypatch) as both:
         numbers = both.numbers
         numbers.publish(50)
@@ -216,7 +216,7 @@ async def test_a_stream_whose_link_ends_beside_a_router_loses_nothing(
 
 
 async def test_the_router_is_told_when_a_publisher_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its key is not of interest any more; with the context the second session ends as well."""
+    """Its key is no longer of interest; when the context closes, so does the second session."""
     async with router() as session:
         async with linked(monkeypatch) as both:
             there = both.router
@@ -225,11 +225,12 @@ async def test_the_router_is_told_when_a_publisher_ends(monkeypatch: pytest.Monk
             assert not there.known
             assert not there.declared
             assert not both.matching._asked
-        await until(lambda: not session.info.transports())  # the router learns of it in a moment
+        # # the router learns of it after a moment
+        await until(lambda: not session.info.transports())
 
 
 async def test_the_router_is_not_asked_for_its_admin_space(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It could deadlock; declarations tell."""
+    """Querying it could deadlock; the declarations are enough."""
     asked: list[object] = []
     async with router():
         with router_client(here()) as session:

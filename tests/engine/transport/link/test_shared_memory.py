@@ -1,4 +1,4 @@
-"""Large payloads are copied once, into memory that is used again, and read in place."""
+"""Large payloads are copied once, into memory that is reused, and read in place."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ SIZE = 100_000
 
 @pytest.fixture
 def pool() -> Iterator[BufferPool]:
-    """A sender's memory."""
+    """Return a sender's memory pool."""
     one = BufferPool()
     yield one
     one.close()
 
 
 def filled(pool: BufferPool, payload: bytes) -> SharedBuffer:
-    """Return a buffer with a payload: there is always memory in these tests."""
+    """Return a buffer with a payload: memory is always available in these tests."""
     found = pool.filled((payload,), len(payload))
     assert found is not None
     return found
 
 
 def given(one: SharedBuffer) -> int:
-    """Return a descriptor as it comes out of a socket."""
+    """Return a descriptor as if it had come out of a socket."""
     return os.dup(one.fd)
 
 
@@ -56,12 +56,12 @@ class Done:
         self.count = 0
 
     def __call__(self) -> None:
-        """Count one."""
+        """Count one release."""
         self.count += 1
 
 
 def descriptors() -> int:
-    """Return how many this process has."""
+    """Return how many descriptors this process has."""
     return len(list(Path("/proc/self/fd").iterdir()))
 
 
@@ -79,7 +79,7 @@ def test_parts_are_put_together_in_the_memory(pool: BufferPool) -> None:
 
 
 def test_memory_that_was_released_is_used_again(pool: BufferPool) -> None:
-    """It has its pages already, and its receivers know it."""
+    """Its pages are already there, and its receivers already have its descriptor."""
     first = filled(pool, b"a" * SIZE)
     pool.release(first)
 
@@ -91,7 +91,7 @@ def test_memory_that_was_released_is_used_again(pool: BufferPool) -> None:
 
 
 def test_memory_in_use_is_left_alone(pool: BufferPool) -> None:
-    """Two receivers got it, and one is still reading."""
+    """Two receivers got it, and one of them is still reading."""
     first = filled(pool, b"a" * SIZE)
     first.users += 1
     pool.release(first)
@@ -101,7 +101,7 @@ def test_memory_in_use_is_left_alone(pool: BufferPool) -> None:
 
 
 def test_of_equal_memories_the_last_used_is_taken(pool: BufferPool) -> None:
-    """It is the one that caches know."""
+    """It is the one most likely to be in the caches."""
     some = [filled(pool, bytes(SIZE)) for _ in range(3)]
     for number in (2, 0, 1):
         pool.release(some[number])
@@ -110,7 +110,7 @@ def test_of_equal_memories_the_last_used_is_taken(pool: BufferPool) -> None:
 
 
 def test_small_payloads_leave_large_memory_to_others(pool: BufferPool) -> None:
-    """The smallest that fits is taken, and none that is far too large."""
+    """The smallest buffer that fits is taken, and none that is far too large."""
     large, middle = filled(pool, bytes(40 * SIZE)), filled(pool, bytes(2 * SIZE))
     pool.release(middle)
     pool.release(large)
@@ -120,7 +120,7 @@ def test_small_payloads_leave_large_memory_to_others(pool: BufferPool) -> None:
 
 
 def test_payloads_that_vary_a_little_share_a_memory(pool: BufferPool) -> None:
-    """As with compressed images: sizes are rounded up by some percent."""
+    """Compressed images do this: sizes are rounded up by a few percent."""
     sizes = range(1_000_000, 1_040_000, 1000)
     numbers = set()
     for size in sizes:
@@ -135,7 +135,7 @@ def test_payloads_that_vary_a_little_share_a_memory(pool: BufferPool) -> None:
 
 
 def test_the_pool_keeps_few_and_says_which_it_closes(pool: BufferPool) -> None:
-    """The one that was not used for longest goes, so that receivers can forget it."""
+    """The least recently used one is closed, so that receivers can forget it."""
     closed: list[int] = []
     pool.listeners.add(closed.append)
     some = [filled(pool, bytes(SIZE)) for _ in range(shared_memory.MOST_IDLE + 2)]
@@ -166,7 +166,7 @@ def test_the_pool_keeps_a_limited_number_of_bytes(
 
 
 def test_memory_of_a_dead_receiver_is_not_used_again(pool: BufferPool) -> None:
-    """Its process may go on reading it, and the others must forget it."""
+    """Its process may still be reading it, and the other receivers must forget it."""
     closed: list[int] = []
     pool.listeners.add(closed.append)
     one = filled(pool, bytes(SIZE))
@@ -179,7 +179,7 @@ def test_memory_of_a_dead_receiver_is_not_used_again(pool: BufferPool) -> None:
 
 
 def test_a_closed_pool_keeps_nothing() -> None:
-    """What is in use is closed when it comes back."""
+    """Memory in use is closed when it is returned."""
     before = descriptors()
     pool = BufferPool()
     idle, busy = filled(pool, bytes(SIZE)), filled(pool, bytes(SIZE))
@@ -194,7 +194,7 @@ def test_a_closed_pool_keeps_nothing() -> None:
 def test_without_descriptors_there_is_no_memory(
     pool: BufferPool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The caller sends the bytes instead."""
+    """The caller sends the bytes over the socket instead."""
 
     def exhausted(*_: Any) -> int:
         raise OSError(24, "Too many open files")
@@ -208,7 +208,7 @@ def test_without_descriptors_there_is_no_memory(
 
 
 def test_a_payload_is_read_in_place(pool: BufferPool) -> None:
-    """It is the sender's memory itself, and only the sender can write to it."""
+    """The receiver sees the sender's memory itself, to which only the sender can write."""
     one = filled(pool, b"a" * SIZE)
     mappings = BufferMappings()
 
@@ -222,7 +222,7 @@ def test_a_payload_is_read_in_place(pool: BufferPool) -> None:
 
 
 def test_the_second_time_a_number_is_enough(pool: BufferPool) -> None:
-    """The mapping is kept: the same pages, in no other place, and all of the memory."""
+    """The mapping is kept: the same pages at the same address, for the whole memory."""
     one = filled(pool, b"a" * 1000)
     mappings = BufferMappings()
     first = np.frombuffer(mappings.view(one.number, 1000, given(one), Done()), np.uint8)
@@ -235,27 +235,27 @@ def test_the_second_time_a_number_is_enough(pool: BufferPool) -> None:
 
 
 def a_slice(view: memoryview) -> object:
-    """A piece of the view."""
+    """Return a slice of the view."""
     return view[10:20][1:3]
 
 
 def a_cast(view: memoryview) -> object:
-    """Numbers in a piece of it."""
+    """Return a slice of the view, cast to numbers."""
     return view[8:88].cast("Q").toreadonly()
 
 
 def an_array(view: memoryview) -> object:
-    """An array of a piece."""
+    """Return an array over a slice."""
     return np.frombuffer(view[8:88], np.uint64)
 
 
 def an_array_of_an_array(view: memoryview) -> object:
-    """An array of what the view is of."""
+    """Return an array over the object that the view is of."""
     return np.asarray(view)[3:].reshape(-1, 1)[5:].view(np.int8)
 
 
 def an_image(view: memoryview) -> object:
-    """The pixels of a message."""
+    """Return the pixels of a message."""
     return cdr.decode(Image, view).data
 
 
@@ -263,7 +263,7 @@ def an_image(view: memoryview) -> object:
 def test_a_payload_is_released_when_the_last_reference_to_it_is_gone(
     pool: BufferPool, look: Callable[[memoryview], object]
 ) -> None:
-    """Views and arrays of any part keep it, and not each other's payloads in the same memory."""
+    """Views and arrays of any part keep it, but no other payload in the same memory."""
     payload = cdr.encode(Image(data=bytes(SIZE)))
     one = filled(pool, payload)
     mappings = BufferMappings()
@@ -282,7 +282,7 @@ def test_a_payload_is_released_when_the_last_reference_to_it_is_gone(
 
 
 def test_what_is_looked_at_outlives_its_mapping(pool: BufferPool) -> None:
-    """Neither the sender's closing nor the end of the link takes memory away from readers."""
+    """Readers keep their memory when the sender closes it and when the link ends."""
     one = filled(pool, b"a" * SIZE)
     mappings = BufferMappings()
     done = Done()
@@ -296,11 +296,11 @@ def test_what_is_looked_at_outlives_its_mapping(pool: BufferPool) -> None:
     assert len(mappings) == 0
     assert bytes(view) == b"a" * SIZE
     del view
-    assert done.count == 0  # the link is closed, so the sender cannot be told
+    assert done.count == 0  # # the link is closed, so the sender cannot be informed
 
 
 def test_a_forgotten_mapping_leaves_nothing_open(pool: BufferPool) -> None:
-    """Neither descriptors nor pages; forgetting an unknown buffer does nothing."""
+    """Neither descriptors nor pages remain; forgetting an unknown buffer does nothing."""
     one = filled(pool, bytes(SIZE))
     before = descriptors_and_maps()
     mappings = BufferMappings()
@@ -319,7 +319,7 @@ def descriptors_and_maps() -> tuple[int, int]:
 
 
 def test_a_number_without_its_descriptor_is_refused(pool: BufferPool) -> None:
-    """It was never mapped, or is forgotten: there is nothing to read."""
+    """It was never mapped, or has been forgotten, so there is nothing to read."""
     one = filled(pool, bytes(SIZE))
     mappings = BufferMappings()
     mappings.view(one.number, SIZE, given(one), Done())
@@ -332,7 +332,7 @@ def test_a_number_without_its_descriptor_is_refused(pool: BufferPool) -> None:
 
 @pytest.mark.parametrize("size", [0, -1, 1 << 20, 1 << 63])
 def test_a_payload_larger_than_its_memory_is_refused(pool: BufferPool, size: int) -> None:
-    """With a descriptor and without: reading behind the end would end the process (SIGBUS)."""
+    """With or without a descriptor: reading past the end would kill the process (SIGBUS)."""
     one = filled(pool, bytes(SIZE))
     mappings = BufferMappings()
     done = Done()
@@ -346,33 +346,33 @@ def test_a_payload_larger_than_its_memory_is_refused(pool: BufferPool, size: int
 
 
 def unsealed() -> int:
-    """Memory that could shrink while it is read."""
+    """Return memory that could shrink while it is being read."""
     fd = os.memfd_create("test", os.MFD_ALLOW_SEALING)
     os.ftruncate(fd, SIZE)
     return fd
 
 
 def half_sealed() -> int:
-    """The same, but it cannot grow."""
+    """Return memory that cannot grow, but could shrink."""
     fd = unsealed()
     fcntl.fcntl(fd, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW)
     return fd
 
 
 def empty() -> int:
-    """No memory at all."""
+    """Return memory of no size."""
     fd = os.memfd_create("test", os.MFD_ALLOW_SEALING)
     fcntl.fcntl(fd, fcntl.F_ADD_SEALS, shared_memory.SEALS)
     return fd
 
 
 def a_file() -> int:
-    """Something else."""
+    """Return the descriptor of a regular file."""
     return os.open(__file__, os.O_RDONLY)
 
 
 def a_pipe() -> int:
-    """Something without a size."""
+    """Return the descriptor of a pipe, which has no size."""
     read, write = os.pipe()
     os.close(write)
     return read
@@ -380,7 +380,7 @@ def a_pipe() -> int:
 
 @pytest.mark.parametrize("make", [unsealed, half_sealed, empty, a_file, a_pipe])
 def test_what_is_no_sealed_memory_is_refused(make: Callable[[], int]) -> None:
-    """Its descriptor is closed, and nothing of it stays."""
+    """Its descriptor is closed, and nothing is kept."""
     fd = make()
     mappings = BufferMappings()
 
@@ -393,7 +393,7 @@ def test_what_is_no_sealed_memory_is_refused(make: Callable[[], int]) -> None:
 
 
 def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
-    """A receiver that tries gets an error; the sender's own mapping is older than the seal."""
+    """A receiver that tries gets an error; the sender's mapping was made before the seal."""
     one = filled(pool, bytes(SIZE))
 
     with pytest.raises(PermissionError):
@@ -401,7 +401,7 @@ def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
 
 
 def test_numpy_is_imported_with_the_first_payload_only() -> None:
-    """It takes a tenth of a second, and a process of small messages never needs it."""
+    """The import takes a tenth of a second, and processes with small messages never need it."""
     code = "import sys, aionode.engine.transport.link._shared_memory as m; m.BufferPool()"
     code += "; m.BufferMappings(); assert 'numpy' not in sys.modules"
 

@@ -14,7 +14,7 @@ STOP = Int32(data=-1)
 
 
 async def test_the_stop_passes_a_full_socket() -> None:
-    """What waits before it is dropped and counted; Zenoh brings it past what the socket holds."""
+    """Messages waiting before it are dropped and counted; Zenoh carries it past the socket."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 20_000)
         await numbers.until_linked()

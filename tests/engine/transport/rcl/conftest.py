@@ -1,4 +1,4 @@
-"""Processes with the rclpy of ROS, or none: other tests of this process may have aionode's."""
+"""Find the real rclpy of ROS, as other tests of this process may have installed aionode's."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.support.without_ros import without_ros
 
 @pytest.fixture(autouse=True)
 def of_ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The rclpy that is installed."""
+    """Return the rclpy that is installed."""
     with without_ros():
         yield
-        monkeypatch.undo()  # later it would take aionode's modules away, which are back by then
+        monkeypatch.undo()  # # later it would remove aionode's modules, which are back by then

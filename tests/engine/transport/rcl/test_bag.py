@@ -1,4 +1,4 @@
-"""Bags beside a process of real rclpy, over DDS: its topics are recorded, and it is played to."""
+"""Bags with a process of real rclpy over DDS: recording its topics, and playing to it."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ DOMAIN_OFFSET = 80
 
 @pytest.fixture(scope="module")
 def peer() -> Iterator[subprocess.Popen[str]]:
-    """A process of rclpy, which echoes what it hears on ``/to_echo``."""
+    """A process of rclpy that echoes what it receives on ``/to_echo``."""
     with ros_peer(ros_domain(DOMAIN_OFFSET)) as process:
         yield process
 
 
 @pytest.fixture(autouse=True)
 def local(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No test is heard on the network."""
+    """Keep the tests off the network."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
 @asynccontextmanager
 async def our_node() -> AsyncIterator[Node]:
-    """Run the node ``/ours``, which knows ``/peer``."""
+    """Run the node ``/ours``, once it knows ``/peer``."""
     async with (
         asyncio.timeout(60),
         Context(transport="rcl", domain_id=ros_domain(DOMAIN_OFFSET)) as context,
@@ -58,7 +58,7 @@ async def our_node() -> AsyncIterator[Node]:
 async def test_the_topics_of_rclpy_are_recorded_in_simulated_time_with_qos_overrides(
     peer: subprocess.Popen[str], tmp_path: Path
 ) -> None:
-    """Its bytes, types and profiles are in the bag, and so are the messages that it has latched."""
+    """The bag has its bytes, types and profiles, and also the messages it had latched."""
     overrides = {"/echoed": QoSProfile(depth=7, reliability=ReliabilityPolicy.BEST_EFFORT)}
     async with our_node() as node:
         clock = node.create_publisher(Clock, "/clock", 10)
@@ -90,7 +90,7 @@ async def test_the_topics_of_rclpy_are_recorded_in_simulated_time_with_qos_overr
 
 
 async def test_a_bag_is_played_to_rclpy(peer: subprocess.Popen[str], tmp_path: Path) -> None:
-    """It hears the messages, in order."""
+    """It receives the messages in order."""
     texts = [str(number) for number in range(50)]
     with bag.BagWriter(tmp_path / "run") as out:
         for number, text in enumerate(texts):

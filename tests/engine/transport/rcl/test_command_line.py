@@ -1,4 +1,4 @@
-"""The command line's answers for the graph of a process of real rclpy, over DDS."""
+"""What the command line prints about the graph of a process of real rclpy, over DDS."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ COMMANDS = {
     ),
     "doctor": r"^Middleware: rmw_fastrtps_cpp \(transport rcl\)\n(.*\n)*Nodes: 1",
 }
-"""The commands, each with what it prints."""
+"""The commands, each with its expected output."""
 
 
 def environment() -> dict[str, str]:
-    """Return that of the commands."""
+    """Return the environment of the commands."""
     return {
         **os.environ,
         "AIONODE_TRANSPORT": "rcl",
@@ -87,7 +87,7 @@ def run(text: str) -> str:
 
 @pytest.fixture(scope="module")
 def answers() -> Iterator[Answers]:
-    """What each of the commands prints. They run beside each other."""
+    """Return the outputs of all commands, which run in parallel."""
     with ros_peer(ros_domain(DOMAIN_OFFSET)), ThreadPoolExecutor(4) as threads:
         yield {text: threads.submit(run, text) for text in COMMANDS}
 
@@ -95,14 +95,14 @@ def answers() -> Iterator[Answers]:
 @pytest.mark.timeout(200)
 @pytest.mark.parametrize("text", COMMANDS)
 def test_a_command_answers(answers: Answers, text: str) -> None:
-    """As it does over Zenoh."""
+    """The output is the same as over Zenoh."""
     printed = answers[text].result()
     assert re.search(COMMANDS[text], printed, re.MULTILINE), printed
 
 
 @pytest.mark.timeout(200)
 def test_the_rate_of_a_topic_is_measured(answers: Answers) -> None:
-    """Until it is interrupted."""
+    """The command runs until it is interrupted."""
     pipe = subprocess.PIPE
     with subprocess.Popen(
         command("topic hz /chatter"), env=environment(), stdout=pipe, text=True
@@ -117,7 +117,7 @@ def test_the_rate_of_a_topic_is_measured(answers: Answers) -> None:
 
 @pytest.mark.timeout(200)
 def test_a_parameter_that_was_set_is_read_back(answers: Answers) -> None:
-    """By other processes."""
+    """Another process reads it back."""
     answers["param dump /peer"].result()
     assert "successful" in run("param set /peer use_sim_time false")
     assert "False" in run("param get /peer use_sim_time")

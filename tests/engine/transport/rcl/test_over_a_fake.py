@@ -1,4 +1,4 @@
-"""What the transport makes of rcl's answers, with an rcl of this process alone: `FakeRcl`.
+"""How the transport handles rcl's answers, with `FakeRcl`, an rcl within this process.
 
 The contract of transports is in ``tests/engine/transport/test_contract.py``, on this one too; here
 is what only rcl does.
@@ -44,7 +44,7 @@ def rcl(monkeypatch: pytest.MonkeyPatch) -> FakeRcl:
 
 
 class Pair:
-    """Two running nodes, each in a context of its own."""
+    """Two running nodes, each in its own context."""
 
     def __init__(self, left: Node, right: Node) -> None:
         self.left = left
@@ -65,7 +65,7 @@ async def pair(rcl: FakeRcl) -> AsyncIterator[Pair]:
 
 
 async def until(condition: Any) -> None:
-    """Wait until something holds that nothing tells of."""
+    """Wait until a condition holds for which there is no notification."""
     async with asyncio.timeout(10):
         while not condition():  # noqa: ASYNC110  # what rcl does sets no event
             await asyncio.sleep(0.005)  # noqa: TID251  # as above
@@ -91,7 +91,7 @@ async def test_what_is_published_before_the_start_is_kept_for_the_late(rcl: Fake
 
 
 async def test_a_context_opens_again_with_its_entities(rcl: FakeRcl) -> None:
-    """Everything is made anew; nothing is left of the first time."""
+    """Everything is created anew, and nothing is left over from the first time."""
     context = Context(transport="rcl")
     for _ in range(2):
         async with Node("node", context=context) as node:
@@ -104,7 +104,7 @@ async def test_a_context_opens_again_with_its_entities(rcl: FakeRcl) -> None:
 async def test_a_refused_message_is_counted_and_logged_once(
     pair: Pair, rcl: FakeRcl, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """With rcl's reason."""
+    """The log line gives rcl's reason."""
     pair.right.create_subscription(Int32, "numbers")
     publisher = pair.left.create_publisher(Int32, "numbers", 10)
     await publisher.wait_for_subscribers()
@@ -117,7 +117,7 @@ async def test_a_refused_message_is_counted_and_logged_once(
 
 
 async def test_large_messages_arrive_in_order_with_the_small_ones(pair: Pair) -> None:
-    """Although a thread sends them."""
+    """Even though a thread sends them."""
     reader = pair.right.create_subscription(UInt8MultiArray, "data", None, 10)
     publisher = pair.left.create_publisher(UInt8MultiArray, "data", 10)
     await publisher.wait_for_subscribers()
@@ -130,7 +130,7 @@ async def test_large_messages_arrive_in_order_with_the_small_ones(pair: Pair) ->
 async def test_a_full_keep_all_subscription_leaves_messages_in_the_middleware(
     pair: Pair, rcl: FakeRcl
 ) -> None:
-    """It takes them as soon as there is room: none is lost."""
+    """It takes them as soon as there is room, so none is lost."""
     profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     reader = pair.right.create_subscription(Int32, "numbers", None, profile)
     publisher = pair.left.create_publisher(Int32, "numbers", profile)
@@ -165,7 +165,7 @@ async def three_arrive(publisher: Publisher[Int32], reader: Subscription[Int32])
 
 
 async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: FakeRcl) -> None:
-    """As those of Cyclone DDS."""
+    """Those of Cyclone DDS have none."""
     rcl.numbers = False
     publisher, reader = await matched(pair)
     await three_arrive(publisher, reader)
@@ -176,15 +176,15 @@ async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: 
 async def test_no_message_is_asked_for_in_vain(
     pair: Pair, rcl: FakeRcl, monkeypatch: pytest.MonkeyPatch, slice_ns: int
 ) -> None:
-    """That would wait for the middleware's lock, which it holds while it receives the next."""
+    """It would wait for the middleware's lock, held while the next message is received."""
     monkeypatch.setattr(_wake, "SLICE_NS", slice_ns)
     publisher, reader = await matched(pair)
-    await until(lambda: rcl.takes)  # what came before the callback was set
+    await until(lambda: rcl.takes)  # # messages that came before the callback was set
     before = rcl.takes
     await three_arrive(publisher, reader)
     publisher.publish(Int32(data=3))
     assert (await reader.receive()).data == 3
-    for _ in range(8):  # one of these turns would ask
+    for _ in range(8):  # # one of these turns would take
         await checkpoint()
     assert rcl.takes - before == 4
 
@@ -199,7 +199,7 @@ async def test_a_middleware_may_tell_of_several_messages_once(pair: Pair, rcl: F
 async def test_a_subscription_that_the_graph_does_not_show_yet_gets_messages(
     pair: Pair, rcl: FakeRcl
 ) -> None:
-    """The middleware knows of it first, and the answer to its first message must not be lost."""
+    """The middleware knows it first, and the answer to its first message must not be lost."""
     publisher = pair.left.create_publisher(Int32, "numbers", 10)
     rcl.hides_changes = True
     reader = pair.right.create_subscription(Int32, "numbers", None, 10)
@@ -218,7 +218,7 @@ async def test_nothing_is_sent_for_subscriptions_of_this_context(pair: Pair, rcl
 
 
 async def test_bytes_in_no_known_form_are_counted(pair: Pair, rcl: FakeRcl) -> None:
-    """And what comes next arrives."""
+    """The messages after it still arrive."""
     reader = pair.right.create_subscription(String, "text", None, 10)
     publisher = pair.left.create_publisher(String, "text", 10)
     await publisher.wait_for_subscribers()
@@ -235,7 +235,7 @@ async def test_bytes_in_no_known_form_are_counted(pair: Pair, rcl: FakeRcl) -> N
 
 
 async def test_a_server_that_goes_ends_the_calls(pair: Pair) -> None:
-    """As soon as the graph says so: no other end is told."""
+    """As soon as the graph shows it, because the other end gets no other notification."""
 
     async def never(request: Any, response: Any) -> Any:
         await asyncio.Event().wait()
@@ -267,7 +267,7 @@ async def test_a_request_that_rcl_refuses_ends_its_call(pair: Pair, rcl: FakeRcl
 async def test_a_handler_that_fails_warns_once(
     pair: Pair, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Its clients wait: services of ROS 2 have no form for an error."""
+    """Its clients keep waiting, because a ROS 2 service cannot return an error."""
 
     def fail(request: Any, response: Any) -> Any:
         raise ValueError("no")
@@ -287,7 +287,7 @@ async def test_a_handler_that_fails_warns_once(
 
 
 async def test_an_answer_with_a_part_missing_is_asked_for_again(pair: Pair, rcl: FakeRcl) -> None:
-    """As DDS tells of a node before it tells of its services."""
+    """DDS may announce a node before it announces its services."""
     rcl.silent = 3
     pair.right.create_service(BasicTypes, "add", lambda request, response: response)
     client = pair.left.create_client(BasicTypes, "add")
@@ -297,7 +297,7 @@ async def test_an_answer_with_a_part_missing_is_asked_for_again(pair: Pair, rcl:
 
 
 async def test_tools_wait_for_what_is_missing(pair: Pair, rcl: FakeRcl) -> None:
-    """Else a command would say that there is no such service."""
+    """Otherwise a command would report that there is no such service."""
     rcl.silent = 3
     pair.right.create_service(BasicTypes, "add", lambda request, response: response)
     await until(lambda: rcl.silent < 3)
@@ -308,7 +308,7 @@ async def test_tools_wait_for_what_is_missing(pair: Pair, rcl: FakeRcl) -> None:
 async def test_tools_wait_for_processes_of_this_host_that_are_not_known(
     pair: Pair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Fast DDS tells of them when they announce themselves again."""
+    """Fast DDS reports them when they next announce themselves."""
     counts = iter((3, 3, 2, 2))
     monkeypatch.setattr(_participants, "count_on_this_host", lambda _: next(counts))
     monkeypatch.setattr(_transport, "LACKING_QUIETS", 1000)
@@ -319,7 +319,7 @@ async def test_tools_wait_for_processes_of_this_host_that_are_not_known(
 async def test_tools_wait_no_longer_than_it_takes_until_all_are_announced(
     pair: Pair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A process that is frozen has a port as well; a command warns then."""
+    """A frozen process has a port as well; in that case the command warns."""
     monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 3)
     monkeypatch.setattr(_transport, "MAX_QUIETS", 1000)
     async with asyncio.timeout(10):
@@ -329,7 +329,7 @@ async def test_tools_wait_no_longer_than_it_takes_until_all_are_announced(
 async def test_tools_know_processes_that_are_no_nodes_by_their_endpoints(
     pair: Pair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Programs of plain DDS say nothing on the topic of ROS 2."""
+    """Programs of plain DDS publish nothing on the discovery topic of ROS 2."""
     monkeypatch.setattr(_participants, "DISCOVERY_TOPIC", "unused")
     monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 2)
     assert await pair.left.context.transports[1].all_known(0.2)
@@ -338,7 +338,7 @@ async def test_tools_know_processes_that_are_no_nodes_by_their_endpoints(
 def test_participants_of_this_host_are_counted_by_their_ports(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Those for discovery; the one after each is for messages."""
+    """Only the discovery ports; the port after each is for messages."""
     monkeypatch.setattr(_participants, "PARTICIPANTS", 1)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as bound:
         bound.bind(("127.0.0.1", 0))
@@ -349,7 +349,7 @@ def test_participants_of_this_host_are_counted_by_their_ports(
 
 
 async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:
-    """By their number, as rcl tells no id."""
+    """By a number, because rcl gives no id."""
     async with (
         Context(transport="rcl") as context,
         Node("right", context=context) as twin,
@@ -362,7 +362,7 @@ async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:
 async def test_an_entity_that_rcl_refuses_is_named(
     pair: Pair, rcl: FakeRcl, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With rcl's reason, and the node lives on."""
+    """The error has rcl's reason, and the node stays alive."""
 
     def refuse(*arguments: object) -> None:
         raise RuntimeError("out of ports")

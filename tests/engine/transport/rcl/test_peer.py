@@ -1,4 +1,4 @@
-"""An aionode node and a node of real rclpy in another process, over DDS."""
+"""An aionode node with a node of real rclpy in another process, over DDS."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ pytestmark = pytest.mark.skipif(bool(ros_missing()), reason=ros_missing() or "th
 
 
 MOMENT = Duration(nanoseconds=100_000_000)
-"""A deadline and a lease that the peer knows too."""
+"""A deadline and a lease, which the peer uses too."""
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,7 @@ def peer() -> Iterator[subprocess.Popen[str]]:
 
 @asynccontextmanager
 async def our_node(domain_id: int) -> AsyncIterator[Node]:
-    """Run the node ``/ours``, which knows ``/peer``."""
+    """Run the node ``/ours``, once it knows ``/peer``."""
     async with (
         asyncio.timeout(40),
         Context(transport="rcl", domain_id=domain_id) as context,
@@ -69,7 +69,7 @@ async def our_node(domain_id: int) -> AsyncIterator[Node]:
 
 @pytest.fixture(autouse=True)
 def local(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No test is heard on the network."""
+    """Keep the tests off the network."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
@@ -81,7 +81,7 @@ async def node(peer: subprocess.Popen[str]) -> AsyncIterator[Node]:
 
 
 async def told(node: Node, command: str) -> str:
-    """Return what the peer says to a command."""
+    """Return the peer's answer to a command."""
     results = node.create_subscription(String, "/results", None, 100)
     commands = node.create_publisher(String, "/commands", 100)
     await commands.wait_for_subscribers()
@@ -92,7 +92,7 @@ async def told(node: Node, command: str) -> str:
 
 
 async def test_messages_travel_in_both_directions(node: Node) -> None:
-    """In order, each once."""
+    """In order, and each once."""
     echoed = node.create_subscription(String, "/echoed", None, 100)
     publisher = node.create_publisher(String, "/to_echo", 100)
     await publisher.wait_for_subscribers()
@@ -105,7 +105,7 @@ async def test_messages_travel_in_both_directions(node: Node) -> None:
 
 
 async def test_large_messages_travel_in_both_directions(node: Node) -> None:
-    """They take another way out: a thread."""
+    """They are sent in another way: from a thread."""
     echoed = node.create_subscription(UInt8MultiArray, "/large_echoed", None, 10)
     publisher = node.create_publisher(UInt8MultiArray, "/large", 10)
     await publisher.wait_for_subscribers()
@@ -118,14 +118,14 @@ async def test_large_messages_travel_in_both_directions(node: Node) -> None:
 
 
 async def test_a_late_subscription_gets_what_was_kept(node: Node) -> None:
-    """The last three of five."""
+    """It gets the last three of five."""
     kept = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     reader = node.create_subscription(String, "/map", None, kept)
     assert [(await reader.receive()).data for _ in range(3)] == ["2", "3", "4"]
 
 
 async def test_its_service_answers(node: Node) -> None:
-    """Many calls at once, too."""
+    """Even when many calls run at the same time."""
     client = node.create_client(BasicTypes, "/add")
     await client.wait_for_service()
     async with asyncio.TaskGroup() as tasks:
@@ -155,7 +155,7 @@ async def test_its_action_server_executes_goals(node: Node) -> None:
 
 
 async def test_its_action_server_cancels_goals(node: Node) -> None:
-    """One that would run for ever."""
+    """Including a goal that would run forever."""
     client = node.create_action_client(Fibonacci, "/fibonacci")
     await client.wait_for_server()
     goal = await client.send_goal(Fibonacci.Goal(order=0))
@@ -190,7 +190,7 @@ async def test_it_cancels_goals_of_our_action_server(node: Node) -> None:
 
 
 async def test_its_parameters_are_read_and_set(node: Node) -> None:
-    """By the services that it has anyway."""
+    """It has the services for it anyway."""
     client = AsyncParameterClient(node, "/peer")
     await client.wait_for_services()
     (result,) = await client.set_parameters([Parameter("speed", value=2.5)])
@@ -200,7 +200,7 @@ async def test_its_parameters_are_read_and_set(node: Node) -> None:
 
 
 async def test_it_sets_our_parameters(node: Node) -> None:
-    """By our services."""
+    """It calls our services."""
     node.declare_parameter("speed", 1.0)
     assert await told(node, "speed 3.5") == "True"
     assert node.get_parameter("speed").value == 3.5
@@ -222,7 +222,7 @@ async def test_its_endpoints_are_in_the_graph(node: Node) -> None:
 
 
 async def event_of(stream: Any, kind: type[Any], **wanted: object) -> Any:
-    """Return the next event of a kind that has some values."""
+    """Return the next event of a kind with some given values."""
     async for event in stream:
         if isinstance(event, kind) and all(
             getattr(event, name) == value for name, value in wanted.items()
@@ -232,14 +232,14 @@ async def event_of(stream: Any, kind: type[Any], **wanted: object) -> Any:
 
 
 async def test_a_publisher_hears_that_its_subscription_is_matched(node: Node) -> None:
-    """By the graph."""
+    """The graph shows the match."""
     publisher = node.create_publisher(String, "/to_echo", 10)
     event = await event_of(publisher.events, MatchedInfo)
     assert (event.current_count, event.current_count_change) == (1, 1)
 
 
 async def test_what_its_publisher_does_not_offer_is_an_event(node: Node) -> None:
-    """The policy is named, and nothing is matched."""
+    """The event names the policy, and there is no match."""
     wanted = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     reader = node.create_subscription(String, "/chatter", None, wanted)
     event = await event_of(reader.events, QoSRequestedIncompatibleQoSInfo)
@@ -248,7 +248,7 @@ async def test_what_its_publisher_does_not_offer_is_an_event(node: Node) -> None
 
 
 async def test_what_its_subscription_asks_in_vain_is_an_event(node: Node) -> None:
-    """The other way round."""
+    """The same in the opposite direction."""
     offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     publisher = node.create_publisher(String, "/to_echo", offered)
     event = await event_of(publisher.events, QoSOfferedIncompatibleQoSInfo)
@@ -257,14 +257,14 @@ async def test_what_its_subscription_asks_in_vain_is_an_event(node: Node) -> Non
 
 
 async def test_another_type_is_an_event(node: Node) -> None:
-    """On the same topic."""
+    """When both use the same topic."""
     reader = node.create_subscription(UInt8MultiArray, "/chatter", None, 10)
     event = await event_of(reader.events, IncompatibleTypeInfo)
     assert event.total_count == 1
 
 
 async def test_a_deadline_that_it_misses_is_an_event(node: Node) -> None:
-    """Counted from its message on."""
+    """The deadline counts from its last message."""
     wanted = QoSProfile(depth=1, deadline=MOMENT)
     reader = node.create_subscription(String, "/hurried", None, wanted)
     while not reader.get_publisher_count():
@@ -275,7 +275,7 @@ async def test_a_deadline_that_it_misses_is_an_event(node: Node) -> None:
 
 
 async def test_it_sees_the_events_of_our_publisher(node: Node) -> None:
-    """Matched, alive, the deadline, the end of a lease, an assertion, and the publisher's end."""
+    """Match, liveliness, deadline, the end of a lease, an assertion, and the publisher's end."""
     events = node.create_subscription(String, "/events", None, 1000)
     while not events.get_publisher_count():
         await node.graph.changed()
@@ -303,7 +303,7 @@ async def test_it_sees_the_events_of_our_publisher(node: Node) -> None:
 
 
 async def test_it_is_told_of_a_publisher_that_offers_too_little(node: Node) -> None:
-    """As by a publisher of rclpy."""
+    """A publisher of rclpy causes the same event."""
     events = node.create_subscription(String, "/events", None, 1000)
     while not events.get_publisher_count():
         await node.graph.changed()
@@ -317,7 +317,7 @@ async def test_it_is_told_of_a_publisher_that_offers_too_little(node: Node) -> N
 
 
 async def test_it_describes_its_types(node: Node) -> None:
-    """A class made of the description has the hash that the graph shows."""
+    """A class generated from the description has the hash that the graph shows."""
     while not node.count_publishers("/chatter"):
         await node.graph.changed()
     users = node.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")
@@ -330,7 +330,7 @@ async def test_it_describes_its_types(node: Node) -> None:
 
 
 async def test_it_asks_for_our_types(node: Node) -> None:
-    """As tools do that lack them."""
+    """Tools that lack the types do this."""
     node.create_publisher(String, "/ours/text", 10)
     assert await told(node, "described std_msgs/msg/String") == "(True, ['data'])"
 
@@ -340,7 +340,7 @@ async def test_it_asks_for_our_types(node: Node) -> None:
 
 @pytest.mark.one_loop
 async def test_a_process_that_ends_cleanly_ends_its_calls_at_once() -> None:
-    """And its node leaves the graph, long before its lease of 20 s ends."""
+    """Its node leaves the graph too, long before its lease of 20 s ends."""
     alone = ros_domain(50)
     with ros_peer(alone) as process:
         async with our_node(alone) as node:
@@ -371,7 +371,7 @@ async def test_it_learns_at_once_that_our_context_ends(node: Node) -> None:
 @pytest.mark.one_loop
 @pytest.mark.stress
 async def test_a_killed_process_ends_its_calls_when_its_lease_ends() -> None:
-    """That of Fast DDS is 20 s."""
+    """Fast DDS has a lease of 20 s."""
     alone = ros_domain(50)
     with ros_peer(alone) as process:
         async with our_node(alone) as node:

@@ -1,4 +1,4 @@
-"""The examples with ``AIONODE_TRANSPORT=rcl`` beside the same programs of real rclpy."""
+"""The examples with ``AIONODE_TRANSPORT=rcl``, together with the same programs of real rclpy."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FOR_RCLPY = {
     "from aionode.interfaces.": "from ",
     "aionode.run(": "rclpy.init(); run = lambda cls: rclpy.spin(cls())\n    run(",
 }
-"""What makes an example a program of rclpy."""
+"""Code that turns an example into a program of rclpy."""
 
 
 @contextmanager
@@ -64,7 +64,7 @@ def program(name: str, kind: str, folder: Path, domain_id: int) -> Iterator[subp
 
 
 def said(process: subprocess.Popen[str], text: str) -> str:
-    """Return the first line of a program with a text, or all that it has printed."""
+    """Return a program's first line with a given text, or everything it has printed."""
     assert process.stdout is not None
     lines = []
     for line in process.stdout:
@@ -76,7 +76,7 @@ def said(process: subprocess.Popen[str], text: str) -> str:
 
 @pytest.mark.parametrize(("publishes", "listens"), [("aionode", "rclpy"), ("rclpy", "aionode")])
 def test_examples_work_beside_those_of_rclpy(publishes: str, listens: str, tmp_path: Path) -> None:
-    """The publisher on one side; the subscriber and the word counter on the other."""
+    """The publisher runs on one side, the subscriber and the word counter on the other."""
     domain_id = ros_domain(60 if publishes == "rclpy" else 61)
     with ExitStack() as stack:
         subscriber, counter, publisher = (

@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(bool(WHY_NOT), reason=WHY_NOT or "there is a ROS
 
 @pytest.fixture(autouse=True)
 def local(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No test is heard on the network."""
+    """Keep the tests off the network."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
@@ -41,7 +41,7 @@ async def our_node(domain_id: int) -> AsyncIterator[Node]:
 
 
 async def until_told(peer: subprocess.Popen[str], *wanted: str) -> None:
-    """Return when the peer has printed all of some lines."""
+    """Return when the peer has printed all given lines."""
     missing = set(wanted)
     while missing:
         assert peer.stdout is not None
@@ -51,7 +51,7 @@ async def until_told(peer: subprocess.Popen[str], *wanted: str) -> None:
 
 
 async def test_a_late_buffer_has_the_static_transforms_of_rclpy_and_hears_the_others() -> None:
-    """Their sender is named; what is in another frame is awaited for a moment to come."""
+    """Their sender is named; for other transforms the buffer waits a moment."""
     domain_id = ros_domain(70)
     with ros_peer(domain_id, "ros_tf_peer"):
         async with our_node(domain_id) as node:
@@ -66,7 +66,7 @@ async def test_a_late_buffer_has_the_static_transforms_of_rclpy_and_hears_the_ot
 
 
 async def test_a_late_node_of_rclpy_gets_our_static_transforms_and_hears_the_others() -> None:
-    """Also those of several calls, which are one message for whoever comes late."""
+    """Including those of several calls, which late joiners get as one message."""
     domain_id = ros_domain(71)
     async with our_node(domain_id) as node:
         static = StaticTransformBroadcaster(node)

@@ -1,4 +1,4 @@
-"""The texts where rcl cannot be used, and where it would help."""
+"""The error texts when rcl cannot be used, and the hints when it would help."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(autouse=True)
 def unloaded() -> Iterator[None]:
-    """Nothing of a test is kept."""
+    """Discard whatever a test loaded."""
     load.cache_clear()
     yield
     load.cache_clear()
@@ -36,7 +36,7 @@ def absent(name: str) -> str:
 
 
 def problem() -> str:
-    """Return why rcl cannot be loaded, which is one line."""
+    """Return the reason why rcl cannot be loaded, which must be one line."""
     with pytest.raises(TransportError) as caught:
         load()
     (line,) = str(caught.value).splitlines()
@@ -51,13 +51,13 @@ def test_without_rclpy_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPa
 
 
 def test_an_old_ros_is_named_with_what_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before it is imported: Humble's is built for another Python."""
+    """Before it is imported, because Humble's rclpy is built for another Python."""
     monkeypatch.setattr(importlib.metadata, "version", lambda name: "3.3.16")
     assert re.search(r"rclpy 3\.3\.16 is too old; it needs ROS 2 Jazzy or later", problem())
 
 
 def test_an_rclpy_of_another_python_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whose own text has several lines."""
+    """The import error itself has several lines."""
     monkeypatch.setattr(importlib.metadata, "version", lambda name: "7.1.6")
     for name in ("rclpy", "rclpy.impl", "rclpy.impl.implementation_singleton"):
         monkeypatch.setitem(sys.modules, name, None)
@@ -65,7 +65,7 @@ def test_an_rclpy_of_another_python_is_named(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_an_unknown_middleware_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before rcl is loaded, which would end the process."""
+    """Before rcl is loaded, as rcl would end the process."""
     monkeypatch.setattr(importlib.metadata, "version", lambda name: "9.1.2")
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_nonsense")
     assert re.search(
@@ -75,13 +75,13 @@ def test_an_unknown_middleware_is_named(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_type_that_is_not_installed_is_named() -> None:
-    """With what to do."""
+    """The error says what to do."""
     with pytest.raises(TransportError, match=r"my_msgs/msg/Mine: the installed ROS has no such"):
         find("my_msgs/msg/Mine")
 
 
 def test_the_environment_chooses_the_transport(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the argument does not."""
+    """If the argument does not."""
     monkeypatch.setenv("AIONODE_TRANSPORT", "rcl")
     assert isinstance(Context().transports[1], RclTransport)
     assert len(Context(transport="local").transports) == 1
@@ -91,7 +91,7 @@ def test_the_environment_chooses_the_transport(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_the_hint_names_the_middleware_that_is_not_heard() -> None:
-    """And none for rmw_zenoh."""
+    """There is no hint with rmw_zenoh."""
     assert unheard_middleware({"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}) == (
         "RMW_IMPLEMENTATION=rmw_fastrtps_cpp: nodes on DDS are not reachable; "
         "use AIONODE_TRANSPORT=rcl to reach them"
@@ -101,20 +101,20 @@ def test_the_hint_names_the_middleware_that_is_not_heard() -> None:
 
 
 def test_a_hash_that_is_not_set_is_unknown() -> None:
-    """Version 0 means so."""
+    """Version 0 means that it is not set."""
     assert hash_text(0, bytes(32)) == ""
     assert hash_text(1, bytes(32)) == "RIHS01_" + "00" * 32
 
 
 def install_mine(monkeypatch: pytest.MonkeyPatch, support: object) -> None:
-    """Install the message class ``my_msgs/msg/Mine`` of rosidl's kind, with a type support."""
+    """Install ``my_msgs/msg/Mine``, a message class like rosidl's, with a type support."""
 
     class Support(type):
         _TYPE_SUPPORT = support
 
         @classmethod
-        def __import_type_support__(cls) -> None:  # its name in rosidl
-            """Find nothing, as with a package that is built for another Python."""
+        def __import_type_support__(cls) -> None:  # # its name in rosidl
+            """Find nothing, as in a package built for another Python."""
 
     module = ModuleType("my_msgs.msg")
     module.Mine = Support("Mine", (), {})  # type: ignore[attr-defined]
@@ -123,14 +123,14 @@ def install_mine(monkeypatch: pytest.MonkeyPatch, support: object) -> None:
 
 
 def test_a_type_without_type_support_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With what to do."""
+    """The error says what to do."""
     install_mine(monkeypatch, None)
     with pytest.raises(TransportError, match="my_msgs/msg/Mine: its type support cannot be loaded"):
         rosidl_class("my_msgs/msg/Mine", "RIHS01_00")
 
 
 def test_a_type_of_another_definition_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """DDS matches types by name alone, and would decode rubbish."""
+    """DDS matches types only by name, and would decode garbage."""
     install_mine(monkeypatch, object())
     monkeypatch.setattr(_types, "type_hash_of", lambda cls: "RIHS01_11")
     with pytest.raises(TransportError, match=r"another definition \(RIHS01_11, here RIHS01_00\)"):

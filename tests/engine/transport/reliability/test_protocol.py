@@ -1,4 +1,4 @@
-"""The state machine of acknowledgements, without a network."""
+"""The state machine of acknowledgements, tested without a network."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WRITER = b"w" * 16
 
 
 class Clock:
-    """Time by hand, in nanoseconds."""
+    """A clock set by hand, in nanoseconds."""
 
     def __init__(self) -> None:
         self.ns = 1_000_000_000
@@ -75,7 +75,7 @@ class Subscription:
         self.reader = StatefulReader(name, self, wire.clock, has_history=has_history)
 
     def receive(self, number: int, size: int) -> None:
-        """Take a message of the topic, as a transport does."""
+        """Receive a message of the topic, as a transport does."""
         proxy = self.reader.proxies.get(WRITER)
         if proxy is None:
             if self.reader.receive_early(WRITER, number):
@@ -87,7 +87,7 @@ class Subscription:
             proxy.receive(number, number, size)
 
     def make_room(self) -> None:
-        """Use the messages that wait."""
+        """Use up the waiting messages."""
         self.has_room = True
         while self._waiting:
             number, proxy = self._waiting.pop(0)
@@ -97,7 +97,7 @@ class Subscription:
     # The output of the reader
 
     def accept(self, item: int, proxy: WriterProxy) -> bool:
-        """Take a message, or keep it waiting without room."""
+        """Accept a message, or keep it waiting if there is no room."""
         if self._waiting or not self.has_room:
             self._waiting.append((item, proxy))
             return False
@@ -105,11 +105,11 @@ class Subscription:
         return True
 
     def item_of(self, submessage: Submessage) -> int:
-        """Return its number."""
+        """Return the number of the message."""
         return submessage.first
 
     def send(self, participant: str, submessage: bytes) -> None:
-        """Send to the writer."""
+        """Send a submessage to the writer."""
         self.answered_to.append(participant)
         self._wire.control.append(submessage)
 
@@ -119,27 +119,27 @@ class Subscription:
         return "writer" if self.announced else ""
 
     def has_arrivals(self) -> bool:
-        """Return False: each message is received as it comes."""
+        """Return False: each message is received as it arrives."""
         return False
 
     def receive_arrivals(self) -> None:
         """Do nothing."""
 
     def malformed(self) -> None:
-        """Fail."""
+        """Fail: no submessage here is malformed."""
         raise AssertionError("no submessage here is malformed")
 
     def refused(self, last: int) -> None:
-        """Record a claim."""
+        """Record a refused claim."""
         self.refusals.append(last)
 
     def started_anew(self, first: int) -> None:
-        """Record a beginning."""
+        """Record a new beginning."""
         self.beginnings.append(first)
 
 
 class Wire:
-    """A writer and its readers, with everything on its way in lists that a test empties.
+    """A writer and its readers, with everything in transit in lists that a test empties.
 
     Attributes:
         control: The submessages under way.
@@ -168,14 +168,14 @@ class Wire:
             self.writer.add(each.name, each.name.hex())
 
     def publish(self, size: int = 10) -> None:
-        """Write one message."""
+        """Publish one message."""
         self.number += 1
         self.writer.write(self.number, self.number.to_bytes(size, "big"), b"")
 
     # The output of the writer
 
     def put(self, payload: bytes, extra: bytes) -> None:
-        """Send to all who are there."""
+        """Send to every reader."""
         assert extra == b""
         for each in self.subscriptions:
             reader = self.writer.readers.get(each.name)
@@ -195,11 +195,11 @@ class Wire:
         return 7
 
     def mute(self, reader: ReaderProxy) -> None:
-        """Record."""
+        """Record a mute reader."""
         self.muted.append(reader.gid)
 
     def lost(self, count: int) -> None:
-        """Count."""
+        """Count lost messages."""
         self.lost_count += count
 
     # The way between
@@ -210,27 +210,27 @@ class Wire:
         self.control.append(pack(kind, WRITER, name, first, last, rest))
 
     def under_way(self, kind: SubmessageKind) -> list[Submessage]:
-        """Return the submessages of a kind that are under way."""
+        """Return the submessages of a kind that are in transit."""
         return [each for each in map(unpack, self.control) if each and each.kind is kind]
 
     def is_next(self, kind: SubmessageKind) -> bool:
-        """Return whether the next submessage under way is of a kind."""
+        """Return whether the next submessage in transit is of a given kind."""
         submessage = unpack(self.control[0]) if self.control else None
         return submessage is not None and submessage.kind is kind
 
     def names_under_way(self) -> list[bytes]:
-        """Return the reader of each submessage under way."""
+        """Return the reader of each submessage in transit."""
         return [each.reader for each in map(unpack, self.control) if each]
 
     def bring_topic(self, which: Subscription, *, lose: bool = False) -> None:
-        """Let the next message arrive, or not."""
+        """Deliver the next message, or lose it."""
         if which.topic:
             number, payload = which.topic.pop(0)
             if not lose and WRITER in which.reader.proxies:
                 which.receive(number, len(payload))
 
     def bring_control(self, index: int = 0, *, lose: bool = False) -> None:
-        """Let one of the submessages arrive, or not."""
+        """Deliver one of the submessages, or lose it."""
         if not self.control:
             return
         submessage = unpack(self.control.pop(index % len(self.control)))
@@ -244,7 +244,7 @@ class Wire:
                 each.reader.receive(submessage)
 
     def bring_all(self) -> None:
-        """Bring everything that is under way."""
+        """Deliver everything in transit."""
         while self.control or any(each.topic for each in self.subscriptions):
             for each in self.subscriptions:
                 while each.topic:
@@ -253,7 +253,7 @@ class Wire:
                 self.bring_control()
 
     def settle(self) -> None:
-        """Bring everything, and let time pass, until nothing happens any more."""
+        """Deliver everything, and advance the time, until nothing happens any more."""
         for _ in range(10_000):
             self.bring_all()
             self.clock.ns += 60_000_000
@@ -272,7 +272,7 @@ class Wire:
 def test_whatever_is_lost_on_the_way_each_reader_has_each_message_once_and_in_order(
     moves: list[tuple[int, int, int]], readers: int, *, keep_all: bool
 ) -> None:
-    """The promise itself, in any order of events."""
+    """This is the guarantee itself, whatever the order of events."""
     wire = Wire(readers, keep_all=keep_all, depth=100_000)
     for move, which, index in moves:
         reader = wire.subscriptions[which % readers]
@@ -306,9 +306,9 @@ def test_whatever_is_lost_on_the_way_each_reader_has_each_message_once_and_in_or
 def test_what_the_depth_drops_is_counted_and_the_rest_arrives_in_order(
     depth: int, moves: list[tuple[int, int]]
 ) -> None:
-    """One reader: what it did not hear was counted, and the last `depth` are there.
+    """With one reader: missing messages were counted, and the last `depth` are there.
 
-    One more may be counted that is being sent again just when it is dropped.
+    One message more may be counted, if it is being retransmitted just as it is dropped.
     """
     wire = Wire(1, keep_all=False, depth=depth)
     (reader,) = wire.subscriptions
@@ -318,7 +318,7 @@ def test_what_the_depth_drops_is_counted_and_the_rest_arrives_in_order(
         elif move <= 4:
             wire.bring_topic(reader, lose=move == 4)
         elif move == 5:
-            if not reader.topic:  # nothing overtakes messages on their way
+            if not reader.topic:  # # nothing overtakes messages in transit
                 wire.bring_control(index)
         else:
             wire.clock.ns += 30_000_000
@@ -331,7 +331,7 @@ def test_what_the_depth_drops_is_counted_and_the_rest_arrives_in_order(
 
 
 def test_numbers_that_went_another_way_are_not_waited_for() -> None:
-    """A publisher leaves Zenoh while links carry everything, and comes back."""
+    """A publisher stops using Zenoh while links carry everything, and later uses it again."""
     wire = Wire(1, keep_all=True, depth=100)
     wire.publish()
     wire.number += 50
@@ -342,19 +342,19 @@ def test_numbers_that_went_another_way_are_not_waited_for() -> None:
 
 
 def test_a_gap_of_any_length_is_told_in_one_word() -> None:
-    """A publisher that was on a link for days comes back to Zenoh."""
+    """A publisher that used a link for days returns to Zenoh."""
     wire = Wire(1, keep_all=True, depth=100)
     wire.settle()
     wire.publish()
     wire.number += 10**12
     wire.publish()
-    wire.control.clear()  # the word is lost, and asked for again
+    wire.control.clear()  # # the GAP is lost, and requested again
     wire.settle()
     assert wire.subscriptions[0].heard == [1, 10**12 + 2]
 
 
 def test_a_writer_sends_a_window_ahead_and_no_more() -> None:
-    """So that nothing on the way to a frozen reader ever fills up."""
+    """Otherwise buffers on the way to a frozen reader would fill up."""
     wire = Wire(1, keep_all=True, depth=1000)
     for _ in range(900):
         wire.publish(10_000)
@@ -368,7 +368,7 @@ def test_a_writer_sends_a_window_ahead_and_no_more() -> None:
 
 
 def test_what_was_dropped_before_it_was_sent_does_not_fill_the_window() -> None:
-    """Else a publisher of large messages stands still for good after its reader lagged once."""
+    """Otherwise a publisher of large messages would be stuck once its reader had lagged."""
     wire = Wire(1, keep_all=False, depth=1)
     for _ in range(20):
         wire.publish(200_000)
@@ -380,7 +380,7 @@ def test_what_was_dropped_before_it_was_sent_does_not_fill_the_window() -> None:
 
 @pytest.mark.parametrize("acknowledges", [True, False])
 def test_what_waits_for_a_frozen_reader_is_sent_to_a_new_one(*, acknowledges: bool) -> None:
-    """No acknowledgement opens the window then."""
+    """No acknowledgement opens the window in that case."""
     wire = Wire(1, keep_all=False, depth=1000)
     topic = wire.subscriptions[0].topic
     for _ in range(100):
@@ -412,7 +412,7 @@ def test_a_lagging_reader_holds_up_no_other_of_a_keep_last_writer() -> None:
 
 
 def vanish_frozen(wire: Wire, reader: Subscription) -> None:
-    """Have a reader give no sign until its lease is over; what is under way to it is lost."""
+    """Let a reader be silent until its lease expires; everything in transit to it is lost."""
     wire.clock.ns += 10_000_000_000
     wire.writer.remove(reader.name)
     reader.topic.clear()
@@ -420,7 +420,7 @@ def vanish_frozen(wire: Wire, reader: Subscription) -> None:
 
 @pytest.mark.parametrize("back", [True, False])
 def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, back: bool) -> None:
-    """It was frozen for longer than its lease: KEEP_ALL is complete when it comes back."""
+    """It was frozen for longer than its lease; KEEP_ALL loses nothing when it returns."""
     wire = Wire(1, keep_all=True, depth=1000)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -443,7 +443,7 @@ def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, bac
 
 
 def test_nothing_is_kept_for_a_reader_that_vanished_without_any_answer() -> None:
-    """Any program may announce a subscription; a reader of aionode answers at once."""
+    """Any program may announce a subscription; aionode's readers answer at once."""
     wire = Wire(1, keep_all=True, depth=1000)
     for _ in range(50):
         wire.publish()
@@ -455,7 +455,7 @@ def test_nothing_is_kept_for_a_reader_that_vanished_without_any_answer() -> None
 
 
 def test_a_keep_all_writer_has_no_room_beyond_its_bytes() -> None:
-    """Ten thousand messages for a reader that never answers are gigabytes if they are large."""
+    """Ten thousand large messages for a reader that never answers would take gigabytes."""
     wire = Wire(1, keep_all=True, depth=10_000, limit_bytes=100_000)
     count = 0
     while wire.writer.has_room():
@@ -468,7 +468,7 @@ def test_a_keep_all_writer_has_no_room_beyond_its_bytes() -> None:
 
 
 def test_a_keep_last_writer_drops_its_oldest_beyond_its_bytes() -> None:
-    """And counts them, like those beyond its depth."""
+    """They are counted, like messages beyond its depth."""
     wire = Wire(1, keep_all=False, depth=10_000, limit_bytes=1_000_000)
     (reader,) = wire.subscriptions
     for _ in range(1_000):
@@ -482,7 +482,7 @@ def test_a_keep_last_writer_drops_its_oldest_beyond_its_bytes() -> None:
 
 
 def test_one_message_is_kept_whatever_its_size() -> None:
-    """A limit is no limit of the size of a message."""
+    """The limit does not restrict the size of a single message."""
     wire = Wire(1, keep_all=False, depth=10, limit_bytes=100)
     wire.publish(10_000)
     wire.settle()
@@ -491,7 +491,7 @@ def test_one_message_is_kept_whatever_its_size() -> None:
 
 
 def test_a_reader_holds_few_bytes_while_a_message_is_missing() -> None:
-    """A writer that leaves out one number, and goes on, must not fill the memory of its readers."""
+    """A writer that skips one number and continues must not fill its readers' memory."""
     wire = Wire(1, keep_all=True, depth=10_000)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -502,11 +502,11 @@ def test_a_reader_holds_few_bytes_while_a_message_is_missing() -> None:
 
     assert reader.heard == []
     proxy.receive(1, 1, 100_000)
-    assert reader.heard == list(range(1, 12))  # a megabyte was held, the rest comes again
+    assert reader.heard == list(range(1, 12))  # # a megabyte was held; the rest is sent again
 
 
 def test_a_reader_that_answered_just_now_has_ended_when_it_vanishes() -> None:
-    """A killed process must not hold up a KEEP_ALL publisher."""
+    """A killed process must not block a KEEP_ALL publisher."""
     wire = Wire(1, keep_all=True, depth=1000)
     for _ in range(10):
         wire.publish()
@@ -520,7 +520,7 @@ def test_a_reader_that_answered_just_now_has_ended_when_it_vanishes() -> None:
 def test_an_idle_keep_all_writer_knows_whether_a_vanished_reader_was_frozen(
     *, answers: bool
 ) -> None:
-    """It has acknowledged everything, so only a probe tells a frozen reader from a killed one."""
+    """All is acknowledged, so only a probe distinguishes a frozen reader from a killed one."""
     wire = Wire(1, keep_all=True, depth=1000)
     (reader,) = wire.subscriptions
     wire.publish()
@@ -546,7 +546,7 @@ def test_an_idle_keep_all_writer_knows_whether_a_vanished_reader_was_frozen(
 
 
 def test_a_reader_that_answers_anyway_is_not_probed() -> None:
-    """A probe is for silence: a busy publisher sends none."""
+    """Probes are for silent readers: a busy publisher sends none."""
     wire = Wire(1, keep_all=True, depth=1000)
     wire.publish()
     wire.settle()
@@ -559,13 +559,13 @@ def test_a_reader_that_answers_anyway_is_not_probed() -> None:
 
 
 def is_data(submessage: bytes) -> bool:
-    """Return whether it is a message that is sent again."""
+    """Return whether it is a retransmitted message."""
     data = unpack(submessage)
     return data is not None and data.kind is DATA
 
 
 def test_a_heavy_loss_is_made_good_without_sending_much_twice() -> None:
-    """A storm of repetitions would make congestion worse."""
+    """A storm of retransmissions would make congestion worse."""
     wire = Wire(1, keep_all=False, depth=20_000)
     (reader,) = wire.subscriptions
     dice = random.Random(1)  # noqa: S311  # the same each time
@@ -584,7 +584,7 @@ def test_a_heavy_loss_is_made_good_without_sending_much_twice() -> None:
 
 
 def test_a_reader_that_vanishes_again_soon_after_its_return_misses_nothing() -> None:
-    """Connections are cut and made anew for a while after a process was frozen."""
+    """For a while after a process was frozen, connections break and are made again."""
     wire = Wire(1, keep_all=True, depth=1000)
     (reader,) = wire.subscriptions
     wire.settle()
@@ -606,7 +606,7 @@ def test_a_reader_that_vanishes_again_soon_after_its_return_misses_nothing() -> 
 
 
 def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() -> None:
-    """It is not waited for as long as one that was silent before it vanished."""
+    """It is not waited for as long as a reader that was silent before it vanished."""
     wire = Wire(1, keep_all=True, depth=1000)
     (reader,) = wire.subscriptions
     wire.settle()
@@ -623,7 +623,7 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
 
 
 def cut_off(wire: Wire, reader: Subscription) -> None:
-    """Lose the connection to a reader that answers."""
+    """Break the connection to a reader that answers."""
     wire.settle()
     wire.writer.remove(reader.name)
     wire.lost_contexts.add(reader.name.hex())
@@ -647,7 +647,7 @@ def test_a_reader_whose_connection_breaks_for_a_moment_misses_nothing(*, keep_al
 
 @pytest.mark.parametrize("limit_bytes", [1 << 40, 1000], ids=["messages", "bytes"])
 def test_a_reader_that_is_cut_off_leaves_a_keep_all_writer_room(limit_bytes: int) -> None:
-    """Its process may have ended. If it returns, it gets all that is published from then on."""
+    """Its process may have exited. If it returns, it gets everything published from then on."""
     wire = Wire(2, keep_all=True, depth=10, limit_bytes=limit_bytes)
     reader, other = wire.subscriptions
     cut_off(wire, reader)
@@ -670,7 +670,7 @@ def test_a_reader_that_is_cut_off_leaves_a_keep_all_writer_room(limit_bytes: int
 
 
 def test_a_reader_that_ends_beside_a_living_connection_is_forgotten_soon() -> None:
-    """Its writer keeps messages only until it would know of a lost connection."""
+    """Its writer keeps messages only until it would have noticed a lost connection."""
     wire = Wire(1, keep_all=True, depth=10)
     (reader,) = wire.subscriptions
     wire.settle()
@@ -688,7 +688,7 @@ def test_a_reader_that_ends_beside_a_living_connection_is_forgotten_soon() -> No
 
 
 def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
-    """A process can announce them, answer for each, and cut its connection, again and again."""
+    """A process can announce them, answer for each, and break its connection repeatedly."""
     wire = Wire(0, keep_all=True, depth=10)
     for number in range(5 * MOST_READERS):
         gid = number.to_bytes(16, "big")
@@ -705,7 +705,7 @@ def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
 def test_a_reader_that_ends_with_its_process_holds_up_no_end_and_has_lost_nothing(
     *, keep_all: bool
 ) -> None:
-    """Its connection breaks as well, and nobody can tell which of both it is."""
+    """Its connection breaks as well, and the order of the two events cannot be known."""
     wire = Wire(1, keep_all=keep_all, depth=10)
     (reader,) = wire.subscriptions
     cut_off(wire, reader)
@@ -720,7 +720,7 @@ def test_a_reader_that_ends_with_its_process_holds_up_no_end_and_has_lost_nothin
 
 
 def test_the_stop_of_a_lease_waits_for_no_window() -> None:
-    """What waits before it is dropped and counted; the reader gets the rest, and the stop last."""
+    """Messages waiting before it are dropped and counted; the stop comes last."""
     wire = Wire(1, keep_all=False, depth=1000)
     (reader,) = wire.subscriptions
     for _ in range(20):
@@ -738,7 +738,7 @@ def test_the_stop_of_a_lease_waits_for_no_window() -> None:
 
 
 def test_a_stop_that_was_sent_already_is_sent_again_only_to_those_who_lack_it() -> None:
-    """Another thread has sent it; here it enters the history."""
+    """Another thread has sent it; here it is added to the history."""
     wire = Wire(1, keep_all=False, depth=10)
     (reader,) = wire.subscriptions
     wire.publish()
@@ -771,7 +771,7 @@ def hear(wire: Wire, count: int) -> None:
 def test_what_is_said_in_a_writers_name_makes_its_reader_miss_nothing(
     kind: SubmessageKind, ahead: int
 ) -> None:
-    """Neither a little ahead of what has come, nor so far that the topic were silent for good."""
+    """Neither slightly ahead of what has arrived, nor so far that the topic would fall silent."""
     wire = Wire(1, keep_all=False, depth=10)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -797,10 +797,10 @@ def test_what_is_said_in_a_writers_name_makes_its_reader_miss_nothing(
 def test_whatever_is_said_in_a_writers_name_each_message_that_comes_is_taken_in_order(
     moves: list[tuple[int, int, int]],
 ) -> None:
-    """Lies beside a stream of which nothing is lost on the way, and nothing overtaken.
+    """False claims beside a stream that loses nothing in transit and is never reordered.
 
-    A message that a lie has made the writer send again, and that comes before an earlier one, costs
-    the earlier one: messages are delivered in order.
+    A false claim may make the writer retransmit a message. If that overtakes an earlier message,
+    the earlier one is lost, because messages are delivered in order.
     """
     wire = Wire(1, keep_all=True, depth=100_000)
     (reader,) = wire.subscriptions
@@ -842,7 +842,7 @@ def test_a_claim_beyond_what_was_sent_is_refused_and_told() -> None:
 
 
 def test_a_reader_believes_how_far_its_writer_came_while_it_was_stopped() -> None:
-    """A true claim: the message at its end is sent when it is asked for."""
+    """The claim is true: the reader asks for the message at its end, and gets it."""
     wire = Wire(2, keep_all=False, depth=10)
     slow, quick = wire.subscriptions
     for _ in range(20_000):
@@ -861,7 +861,7 @@ def test_a_reader_believes_how_far_its_writer_came_while_it_was_stopped() -> Non
 
 @pytest.mark.parametrize("far", [1, 5_000])
 def test_a_gap_of_numbers_that_went_another_way_needs_no_answer(far: int) -> None:
-    """The message after it shows that it is true; a filter may hold back very many."""
+    """The message after it proves the claim; a filter may hold back very many messages."""
     wire = Wire(1, keep_all=True, depth=100)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -876,7 +876,7 @@ def test_a_gap_of_numbers_that_went_another_way_needs_no_answer(far: int) -> Non
 
 
 def test_a_lie_does_not_keep_a_writer_from_learning_that_everything_arrived() -> None:
-    """It would wait at its end for an acknowledgement of no more than it has sent."""
+    """Otherwise it would wait, at its end, for an acknowledgement beyond what it has sent."""
     wire = Wire(1, keep_all=True, depth=10)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -888,7 +888,7 @@ def test_a_lie_does_not_keep_a_writer_from_learning_that_everything_arrived() ->
 
 
 def test_a_first_heartbeat_that_lies_costs_no_message() -> None:
-    """Nothing else says where a stream begins for a reader, so it is believed until one comes."""
+    """A reader has no other source for the start of a stream, and believes it until data comes."""
     wire = Wire(1, keep_all=False, depth=10)
     (reader,) = wire.subscriptions
     wire.say(HEARTBEAT, reader.name, FAR, FAR)
@@ -901,7 +901,7 @@ def test_a_first_heartbeat_that_lies_costs_no_message() -> None:
 
 
 def test_a_reader_that_gets_only_messages_far_below_what_it_expects_starts_anew() -> None:
-    """Whoever may publish the topic can send a wrong number as a message; that heals as well."""
+    """Anyone allowed to publish the topic can send a wrong number; the reader recovers."""
     wire = Wire(1, keep_all=False, depth=10)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -919,7 +919,7 @@ def test_a_reader_that_gets_only_messages_far_below_what_it_expects_starts_anew(
 
 
 def test_messages_that_were_only_overtaken_do_not_begin_a_stream_anew() -> None:
-    """A burst of old ones, or those that were sent again, would be heard out of order."""
+    """A burst of old or retransmitted messages would otherwise be delivered out of order."""
     wire = Wire(1, keep_all=False, depth=10)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -939,7 +939,7 @@ def test_messages_that_were_only_overtaken_do_not_begin_a_stream_anew() -> None:
 
 
 def test_readers_that_never_answer_are_asked_a_few_at_a_time() -> None:
-    """Anybody can announce thousands: to ask all at once would stop the event loop."""
+    """Anyone can announce thousands of readers; asking all at once would block the event loop."""
     wire = Wire(1, keep_all=False, depth=10)
     hear(wire, 1)
     wire.settle()
@@ -967,7 +967,7 @@ def forget(wire: Wire, name: bytes) -> None:
 
 @pytest.mark.parametrize("keep_all", [True, False])
 def test_a_reader_that_never_answers_is_waited_for_some_seconds_only(*, keep_all: bool) -> None:
-    """Any program may announce it, and say that it acknowledges; the others get everything."""
+    """Any program may announce one and claim to acknowledge; other readers still get everything."""
     wire = Wire(2, keep_all=keep_all, depth=10_000)
     liar, reader = wire.subscriptions
     forget(wire, liar.name)
@@ -1010,11 +1010,11 @@ def test_a_reader_that_has_answered_once_is_not_taken_for_mute() -> None:
     assert not wire.writer.done
 
 
-# The reader's end alone
+# # The reader's side only
 
 
 def test_a_reader_without_room_is_sent_no_more_than_a_window() -> None:
-    """Nothing on the way has to wait for it, and it says again and again that it used nothing."""
+    """Nothing in transit has to wait for it, and it keeps reporting that it has used nothing."""
     wire = Wire(1, keep_all=True, depth=10_000)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -1039,7 +1039,7 @@ def test_a_reader_without_room_is_sent_no_more_than_a_window() -> None:
 
 @pytest.mark.parametrize("announced", [True, False])
 def test_a_heartbeat_in_a_writers_name_leads_no_answer_astray(*, announced: bool) -> None:
-    """A KEEP_ALL writer would wait for it for good; what is announced counts, as soon as it is."""
+    """A KEEP_ALL writer would wait for it for good; once announced, the announcement counts."""
     wire = Wire(1, keep_all=True, depth=10)
     (reader,) = wire.subscriptions
     reader.announced = announced
@@ -1056,7 +1056,7 @@ def test_a_heartbeat_in_a_writers_name_leads_no_answer_astray(*, announced: bool
 
 
 def test_a_heartbeat_that_names_no_context_is_malformed() -> None:
-    """The answer would go to a key that its sender has chosen."""
+    """The answer would go to a key chosen by the sender."""
     wire = Wire(1, keep_all=True, depth=10)
     (reader,) = wire.subscriptions
     reader.announced = False
@@ -1067,7 +1067,7 @@ def test_a_heartbeat_that_names_no_context_is_malformed() -> None:
 
 
 def test_a_reader_that_was_frozen_does_not_give_its_writer_up() -> None:
-    """When it goes on, its clock has jumped, and the writer is not announced yet."""
+    """When it resumes, its clock has jumped, and the writer is not announced yet."""
     wire = Wire(1, keep_all=True, depth=10)
     (reader,) = wire.subscriptions
     wire.bring_control()
@@ -1086,7 +1086,7 @@ def test_a_reader_that_was_frozen_does_not_give_its_writer_up() -> None:
 
 @pytest.mark.parametrize("is_forgotten", [True, False], ids=["forgotten", "waited for"])
 def test_a_reader_with_a_history_that_returns_gets_each_message_once(*, is_forgotten: bool) -> None:
-    """From the history if its writer took it for ended, and else from both."""
+    """They come from the history if its writer thought it had ended, and otherwise from both."""
     wire = Wire(0, keep_all=True, depth=100)
     reader = Subscription(b"r" * 16, wire, has_history=True)
     wire.subscriptions.append(reader)
@@ -1104,7 +1104,7 @@ def test_a_reader_with_a_history_that_returns_gets_each_message_once(*, is_forgo
 
     wire.clock.ns += 100 if is_forgotten else 10_000_000_000
     if not is_forgotten:
-        wire.publish()  # it is waited for as it lacks this one
+        wire.publish()  # # the reader waits for it, as it lacks this one
         reader.topic.clear()
     wire.writer.remove(reader.name)
     if is_forgotten:
@@ -1123,5 +1123,5 @@ def test_a_reader_with_a_history_that_returns_gets_each_message_once(*, is_forgo
     wire.settle()
 
     assert reader.heard == list(range(1, wire.number + 1))
-    assert reader.beginnings == []  # nobody lied
+    assert reader.beginnings == []  # # there was no false claim
     assert wire.lost_count == 0
