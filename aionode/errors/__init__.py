@@ -19,6 +19,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
+    ├── EpisodeError (RuntimeError)
     ├── ExecutableNotFoundError (LookupError)
     ├── ForkedProcessError (RuntimeError)
     ├── GoalError (RuntimeError)
@@ -113,7 +114,7 @@ from aionode.errors._interfaces import (
     MessageError,
     TypeDescriptionError,
 )
-from aionode.errors._learn import ContractError, DatasetError
+from aionode.errors._learn import ContractError, DatasetError, EpisodeError
 from aionode.errors._names import (
     InvalidLogLevelError,
     InvalidNamespaceException,
@@ -192,6 +193,7 @@ __all__ = [
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",
+    "EpisodeError",
     "ExecutableNotFoundError",
     "ExtrapolationException",
     "ForkedProcessError",

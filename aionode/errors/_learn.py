@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from aionode.errors._base import AionodeError
 
-__all__ = ["ContractError", "DatasetError"]
+__all__ = ["ContractError", "DatasetError", "EpisodeError"]
 
 
 class ContractError(AionodeError, ValueError):
@@ -37,3 +37,15 @@ class DatasetError(AionodeError, ValueError):
         self.problem = problem
         self.remedy = remedy
         super().__init__(f"data set {path}: {problem}" + (f"; {remedy}" if remedy else ""))
+
+
+class EpisodeError(AionodeError, RuntimeError):
+    """An episode cannot be begun or ended now.
+
+    Attributes:
+        problem: Why, and what to do.
+    """
+
+    def __init__(self, problem: str) -> None:
+        self.problem = problem
+        super().__init__(f"episodes: {problem}")

@@ -18,6 +18,7 @@ import pyarrow.parquet as pq
 from aionode import bag
 from aionode.errors import DatasetError
 from aionode.learn._alignment import Aligned, Series, aligned
+from aionode.learn._metadata import CONTRACT_KEY, TASK_KEY
 from aionode.learn._report import counted, report_of
 from aionode.learn._scan import UNREADABLE, records_of, scanned
 from aionode.learn._video import PixelStats, VideoWriter
@@ -29,10 +30,7 @@ if TYPE_CHECKING:
     from aionode.bag import Bag, Record
     from aionode.learn._entries import Array
 
-__all__ = ["CONTRACT_KEY", "OUTCOME_KEY", "PART", "TASK_KEY", "Job", "contract_in", "run"]
-
-TASK_KEY, CONTRACT_KEY, OUTCOME_KEY = "task", "contract", "outcome"
-"""What the metadata of an episode's bag has: words, JSON, and ``success`` or ``failure``."""
+__all__ = ["PART", "Job", "contract_in", "run"]
 
 PART: Final = "part.json"
 """The file that says that a part is complete."""

@@ -14,9 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode import bag
-from aionode.errors import DatasetError
+from aionode.clock import Clock, ClockType
+from aionode.errors import BagError, DatasetError
 from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
 from aionode.learn._episode import PART, Job, contract_in, run
+from aionode.learn._metadata import FAILURE, OUTCOME_KEY
 from aionode.learn._report import Limits, counted, over, text_of
 from aionode.learn.contract import Contract
 
@@ -29,6 +31,11 @@ PARTS: Final = ".parts"
 """The folder with what is exported so far, from which an export goes on."""
 
 REPORT: Final = "meta/report.json"
+
+QUIET_SEC: Final = 5.0
+"""How long nothing was written to a bag whose recorder was killed; one that records syncs twice a
+second.
+"""
 
 TOLD_SEC: Final = 0.2
 """How often processes are asked for their progress."""
@@ -77,6 +84,7 @@ def export(
     task: str = "",
     codec: str = "h264",
     jobs: int = 0,
+    failures: bool = False,
     limits: Limits | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Exported:
@@ -93,6 +101,7 @@ def export(
         task: The task of all episodes; by default, that of each recording.
         codec: ``h264``, or ``av1``: smaller, and three times as much work.
         jobs: Bags to convert at the same time; 0 for as many as the processors can do.
+        failures: Whether to also convert episodes that ended as failures.
         limits: What may be wrong before it counts as a problem.
         progress: Called with the messages read so far, and all that are to be read.
 
@@ -106,6 +115,9 @@ def export(
     if (place / INFO).exists():
         raise DatasetError(str(out), "it is there already", "give another name, or remove it")
     paths = [path for each in bags for path in bags_in(Path(each))]
+    for path in paths:
+        repair(path)
+    paths = [path for path in paths if failures or not failed(path)]
     found = contract or common_contract(paths)
     check_sizes(found)
     cameras = max(sum(1 for each in found.observations if each.image), 1)
@@ -143,6 +155,33 @@ def bags_in(path: Path) -> list[Path]:
     if not path.is_dir() or any(path.glob("*.yaml")) or any(path.glob("*.mcap")):
         return [path]
     return [each for each in sorted(path.iterdir()) if any(each.glob("*.mcap"))] or [path]
+
+
+def repair(path: Path) -> None:
+    """Close the bag of a recorder that was killed; all but the last second is there.
+
+    Raises:
+        BagError: it is damaged otherwise (a ValueError).
+        DatasetError: it may still be recorded (a ValueError).
+    """
+    try:
+        bag.open(path).close()
+    except BagError as error:
+        now = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
+        newest = max((each.stat().st_mtime_ns for each in path.glob("*.mcap")), default=0)
+        if (now - newest) / 1e9 < QUIET_SEC:
+            raise DatasetError(
+                str(path),
+                "it is not closed, and was just written to",
+                f"end its recording first, or wait {QUIET_SEC:g} s if its recorder was killed",
+            ) from error
+        bag.check(path)
+
+
+def failed(path: Path) -> bool:
+    """Return whether the episode of a bag ended as a failure."""
+    with bag.open(path) as opened:
+        return opened.custom_data.get(OUTCOME_KEY) in {FAILURE, "discarded"}
 
 
 def common_contract(bags: Sequence[Path]) -> Contract:

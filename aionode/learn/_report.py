@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from aionode.errors import escaped
+from aionode.learn._metadata import OUTCOME_KEY
 
 if TYPE_CHECKING:
     from aionode.bag import Bag
@@ -15,7 +16,17 @@ if TYPE_CHECKING:
     from aionode.learn._entries import Array
     from aionode.learn.contract import Action, Contract, Observation
 
-__all__ = ["Limits", "counted", "over", "report_of", "text_of"]
+__all__ = [
+    "Limits",
+    "counted",
+    "lags",
+    "over",
+    "report_of",
+    "text_of",
+    "topic_of",
+    "topic_text",
+    "trouble_of",
+]
 
 OTHER_CLOCK: Final = 1.0
 """The seconds between stamp and arrival from which they are of two clocks."""
@@ -67,7 +78,7 @@ def report_of(
             for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
         ],
         "lag_sec": lags(contract, rows) if kept else {},
-        "outcome": opened.custom_data.get("outcome", ""),
+        "outcome": opened.custom_data.get(OUTCOME_KEY, ""),
         "problems": problems,
     }
 
@@ -200,6 +211,45 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
 def counted(count: int, what: str) -> str:
     """Return a number with its noun."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def trouble_of(
+    contract: Contract, entry: Observation | Action, topic: dict[str, Any], rows: int
+) -> list[str]:
+    """Return what is wrong with a topic of a running robot, with what to do.
+
+    Args:
+        contract: The contract.
+        entry: Its entry.
+        topic: The numbers of `topic_of`.
+        rows: How many rows there could have been.
+    """
+    name, age, limit = entry.topic, topic["age_sec"], contract.max_age(entry)
+    found = []
+    if topic["invalid"]:
+        found.append(f"{name}: {counted(topic['invalid'], 'message')}: {topic['problem']}")
+    if topic["backwards"]:
+        found.append(f"{name}: times that go back; do two nodes publish it?")
+    offset = topic["offset_sec"]
+    if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
+        found.append(
+            f"{name}: stamped {offset['p50']:.1f} s before arrival, by another clock; "
+            "stamp: receive fits"
+        )
+    if topic["is_main"]:
+        every = max(round(topic["rate_hz"] / contract.fps), 1)
+        if topic["rate_hz"] and abs(topic["rate_hz"] / every / contract.fps - 1) > Limits().rate:
+            found.append(
+                f"{name}: {topic['rate_hz']:.1f} Hz, and fps is {contract.fps}; set the camera's "
+                "rate, or fps"
+            )
+    elif topic["stale"] > Limits().dropped * rows:
+        worst = f", up to {age['max'] * 1e3:.0f} ms" if age else ""
+        found.append(
+            f"{name}: too old for {counted(topic['stale'], 'row')}: max_age is {limit * 1e3:.0f} "
+            f"ms, and it has {topic['rate_hz']:.1f} Hz{worst}; raise its rate or max_age"
+        )
+    return found
 
 
 def share(part: float, whole: float) -> float:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from aionode.bag import Bag, Record
     from aionode.learn.contract import Action, Contract, Observation
 
-__all__ = ["records_of", "scanned"]
+__all__ = ["UNREADABLE", "Collected", "records_of", "scanned"]
 
 UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
 """What a message that does not fit the contract raises."""

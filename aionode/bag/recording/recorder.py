@@ -249,6 +249,14 @@ class Recorder:
         raw = cdr.encode(msg)
         recording.put(Row(number, time_ns, time_ns, 0, len(raw), raw))
 
+    def annotate(self, key: str, value: str) -> None:
+        """Add an entry to the metadata of the bag, which are written when it is closed.
+
+        Raises:
+            BagError: the recorder is stopped.
+        """
+        self._open_recording.annotate(key, value)
+
     @property
     def stats(self) -> dict[str, TopicStats]:
         """The messages recorded and lost, by topic; after `stop`, those of the last bag."""

@@ -150,6 +150,10 @@ class Recording:
         """Write the rest, and close the bag; cancellation does not cut this short."""
         await to_the_end(run_in_thread(self.thread.stop))
 
+    def annotate(self, key: str, value: str) -> None:
+        """Add an entry to the metadata, which are written when the bag is closed."""
+        self._writer.custom_data[key] = value
+
     def _note_losses(self) -> None:
         losses = {
             name: Lost(each.lost_in_transport, each.lost_in_recorder)

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from aionode.cli._support.options import interfaces_option, json_option
+from aionode.cli._nouns.bag.terminal import SPACE, keys_pressed, progress_shown
+from aionode.cli._support.options import interfaces_option, json_option, positive
 from aionode.cli._support.output import Output
+from aionode.cli._support.session import run_until_stopped, run_verb
+from aionode.errors import AionodeError, escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Awaitable, Callable, Iterator
+
+    from aionode.learn import Episodes
+    from aionode.node import Node
 
 __all__ = ["learn_command"]
 
@@ -25,6 +33,87 @@ def learn_command() -> None:
 
     A contract is a YAML file that names the topics that a policy observes and commands.
     """
+
+
+@learn_command.command("check")
+@interfaces_option
+@click.argument("contract")
+@click.option("--time", "length", type=positive, default=3.0, help="Seconds to listen.")
+@json_option
+def check_command(contract: str, length: float, json: bool) -> None:
+    """Compare a running robot with a contract.
+
+    Prints the rate of each topic, its age at a picture and its QoS, and what does not fit. The exit
+    status is 1 if something does not.
+    """
+    from aionode.learn import Contract, check
+
+    read = Contract.load(contract)
+
+    async def verb(node: Node, output: Output) -> int:
+        found = await check(node, read, length)
+        marked = [f"! {problem}" for problem in found.problems]
+        output.item(
+            escaped("\n".join([found.text, *marked])),
+            {"topics": found.topics, "problems": found.problems},
+        )
+        return 1 if found.problems else 0
+
+    run_verb(verb, json=json, busy=True)
+
+
+@learn_command.command("record")
+@interfaces_option
+@click.option("--contract", required=True, metavar="FILE", help="The contract.")
+@click.option("--task", default="", help="The task; default: that of the contract.")
+@click.option("-o", "--output", "folder", default="episodes", help="The folder of the episodes.")
+@click.option("--topic", "topics", multiple=True, help="A further topic to record.")
+@click.option("--node-name", default="episodes", help="Name of the node.")
+def record_command(
+    contract: str, task: str, folder: str, topics: tuple[str, ...], node_name: str
+) -> None:
+    """Record demonstrations, each as a bag of its own, until Ctrl-C.
+
+    SPACE starts an episode, and ends it as a success; f ends it as a failure, d discards it, and r
+    discards it and starts again. The services ~/start, ~/end, ~/fail, ~/discard and ~/again do the
+    same, and so does the action ~/record.
+    """
+    from aionode.engine.context import Context
+    from aionode.learn import Contract, Episodes
+    from aionode.runner import best_loop_factory
+
+    read = Contract.load(contract)
+
+    async def record() -> None:
+        episodes = Episodes(
+            folder, read, task=task, topics=topics, context=Context(), node_name=node_name
+        )
+        async with episodes, asyncio.TaskGroup() as tasks:
+            with keys_pressed(episode_keys(episodes, tasks), wanted=True):
+                async with progress_shown(lambda: episodes.text, 3):
+                    await asyncio.Event().wait()
+
+    status = run_until_stopped(record(), loop_factory=best_loop_factory())
+    raise click.exceptions.Exit(status or 0)
+
+
+def episode_keys(episodes: Episodes, tasks: asyncio.TaskGroup) -> dict[str, Callable[[], object]]:
+    """Return what the keys do."""
+
+    async def toggle() -> object:
+        return await (episodes.start() if episodes.current is None else episodes.end())
+
+    async def told(act: Callable[[], Awaitable[object]]) -> None:
+        try:
+            await act()
+        except (AionodeError, OSError) as error:
+            episodes.node.get_logger().error(str(error))
+
+    def pressed(act: Callable[[], Awaitable[object]]) -> None:
+        tasks.create_task(told(act))
+
+    acts = {SPACE: toggle, "f": episodes.fail, "d": episodes.discard, "r": episodes.again}
+    return {key: partial(pressed, act) for key, act in acts.items()}
 
 
 @learn_command.command("export")
@@ -44,6 +133,7 @@ def learn_command() -> None:
 @click.option(
     "--max-rate-error", type=SHARE, default=0.05, help="How far the rate may be from fps."
 )
+@click.option("--failures", is_flag=True, help="Also episodes that ended as failures.")
 @json_option
 def export_command(episodes: tuple[str, ...], out: str, **values: Any) -> None:
     """Convert episodes to a data set of LeRobot, format v3.0.
@@ -64,6 +154,7 @@ def export_command(episodes: tuple[str, ...], out: str, **values: Any) -> None:
             task=values["task"],
             codec=values["codec"],
             jobs=values["jobs"],
+            failures=values["failures"],
             limits=Limits(values["max_dropped"], values["max_repeated"], values["max_rate_error"]),
             progress=progress,
         )

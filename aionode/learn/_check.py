@@ -1,0 +1,147 @@
+"""Compares a running robot with a contract: what is there, how often, and how old at a picture."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.bag import Record, TopicInfo
+from aionode.bag.recording.recorder import adapted_qos
+from aionode.graph import EndpointKind
+from aionode.learn._alignment import aligned
+from aionode.learn._report import lags, topic_of, topic_text, trouble_of
+from aionode.learn._scan import Collected
+from aionode.node import direct_subscription
+
+if TYPE_CHECKING:
+    from aionode.graph import EndpointInfo
+    from aionode.learn.contract import Action, Contract, Observation
+    from aionode.node import Node
+
+__all__ = ["Checked", "check"]
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What a check of a robot has found.
+
+    Attributes:
+        topics: The numbers of each topic of the contract.
+        text: What is there, in plain words.
+        problems: What does not fit, with what to do.
+    """
+
+    topics: list[dict[str, Any]]
+    text: str
+    problems: list[str]
+
+
+async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Checked:
+    """Listen to a running robot, and say what does not fit a contract.
+
+    Args:
+        node: A node that runs, and knows the graph.
+        contract: The contract.
+        duration_sec: How long to listen.
+    """
+    collected = [Collected(entry) for entry in contract.entries]
+    by_topic: dict[str, list[Collected]] = {}
+    for each in collected:
+        by_topic.setdefault(node.resolve_topic_name(each.entry.topic), []).append(each)
+    publishers = {name: endpoints_of(node, name, EndpointKind.PUBLISHER) for name in by_topic}
+    subscriptions = [
+        direct_subscription(
+            node,
+            each[0].entry.message_type,
+            name,
+            partial(take, each, TopicInfo(name=name, type=each[0].entry.type)),
+            adapted_qos([endpoint.qos for endpoint in publishers[name]]),
+        )
+        for name, each in by_topic.items()
+    ]
+    try:
+        await node.get_clock().sleep(duration_sec)
+    finally:
+        for subscription in subscriptions:
+            subscription.destroy()
+    series = [each.series() for each in collected]
+    rows = aligned(contract, series)
+    topics = [
+        topic_of(contract, entry, each, rows, position)
+        for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
+    ]
+    lines, problems = [], []
+    for entry, topic in zip(contract.entries, topics, strict=True):
+        name = node.resolve_topic_name(entry.topic)
+        lines.append(f"{topic_text(topic, len(rows.times))}{qos_text(publishers[name])}")
+        problems += problems_of(node, contract, entry, topic, publishers[name]) or trouble_of(
+            contract, entry, topic, rows.references
+        )
+    if not problems and not len(rows.times):
+        problems.append("no picture had everything that is fresh enough; see the ages above")
+    followed = lags(contract, rows) if rows.starts else {}
+    lines += [
+        f"{name}: observed {lag * 1e3:.0f} ms after its command" for name, lag in followed.items()
+    ]
+    return Checked(topics, "\n".join(lines), problems)
+
+
+def take(
+    collected: list[Collected],
+    info: TopicInfo,
+    raw: Any,
+    sequence: int,
+    source_ns: int,
+    received_ns: int,
+) -> None:
+    """Take a message of a subscription."""
+    joined = b"".join(raw) if isinstance(raw, list) else bytes(raw)
+    record = Record(info, received_ns, source_ns, sequence, joined)
+    for each in collected:
+        each.take(record)
+
+
+def endpoints_of(node: Node, name: str, kind: EndpointKind) -> list[EndpointInfo]:
+    """Return the endpoints of a topic."""
+    return [each for each in node.graph.endpoints(kind) if each.name == name]
+
+
+def qos_text(publishers: list[EndpointInfo]) -> str:
+    """Return the reliability and durability that publishers offer."""
+    offered = sorted({
+        f"{each.qos.reliability.name.lower()}, {each.qos.durability.name.lower()}"
+        for each in publishers
+    })  # fmt: skip
+    return f"; {' or '.join(offered).replace('_', ' ')}" if offered else ""
+
+
+def problems_of(
+    node: Node,
+    contract: Contract,
+    entry: Observation | Action,
+    topic: dict[str, Any],
+    publishers: list[EndpointInfo],
+) -> list[str]:
+    """Return what does not fit about a topic, with what to do."""
+    name = node.resolve_topic_name(entry.topic)
+    others = {each.type_name for each in publishers} - {entry.type}
+    is_action = entry in contract.actions
+    if others:
+        return [f"{name}: it is {', '.join(sorted(others))}, and {entry.type} in the contract"]
+    if is_action and not publishers:
+        robot = endpoints_of(node, name, EndpointKind.SUBSCRIPTION)
+        types = {each.type_name for each in robot}
+        if entry.type in types:
+            return []  # nobody demonstrates, and the robot would listen
+        if types:
+            return [f"{name}: the robot takes {', '.join(sorted(types))}, and not {entry.type}"]
+    if not publishers:
+        known = {each.name for each in node.graph.endpoints(EndpointKind.PUBLISHER)}
+        near = difflib.get_close_matches(name, sorted(known), 1)
+        remedy = f"did you mean {near[0]}?" if near else "start its driver"
+        return [f"{name}: nobody publishes it; {remedy}"]
+    if not topic["messages"] and not topic["invalid"]:
+        return [f"{name}: published, but nothing arrived; is its driver at work?"]
+    return []

@@ -1,0 +1,283 @@
+"""Recording demonstrations, and comparing a running robot with a contract."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import textwrap
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aionode import bag, image
+from aionode.engine.context import Context
+from aionode.errors import DatasetError, EpisodeError
+from aionode.interfaces.sensor_msgs.msg import Image, JointState
+from aionode.interfaces.std_srvs.srv import Trigger
+from aionode.learn import Contract, Episodes, RecordEpisode, check, export
+from aionode.node import Node
+from aionode.testing import local_context, settle
+from tests.support.demonstrations import angle, contract, picture, stamp
+
+
+class Robot:
+    """A robot whose camera shows its joint."""
+
+    def __init__(self, context: Context) -> None:
+        self.node = Node("robot", context=context)
+        self.camera = self.node.create_publisher(Image, "/camera0", 10)
+        self.joints = self.node.create_publisher(JointState, "/joint_states", 10)
+        self.commands = self.node.create_publisher(JointState, "/command", 10)
+        self.count = 0
+
+    async def step(self, times: int = 1) -> None:
+        """Publish everything, at steps of a thirtieth of a second that end now."""
+        now = self.node.get_clock().now().nanoseconds
+        begin_ns = now - round((self.count + times) / 30 * 1e9)
+        for _ in range(times):
+            sec = self.count / 30
+            at = stamp(begin_ns + round(sec * 1e9))
+            state = JointState(name=["joint"], position=[angle(sec)], velocity=[0.0])
+            shown = image.from_numpy(picture(sec), "rgb8")
+            state.header.stamp = shown.header.stamp = at
+            self.commands.publish(state)
+            self.joints.publish(state)
+            self.camera.publish(shown)
+            self.count += 1
+            await settle()
+
+
+def stamped(**changes: Any) -> Contract:
+    """Return a contract whose commands have stamps, as steps are faster than the clock."""
+    action = {
+        "feature": "action",
+        "topic": "/command",
+        "type": "sensor_msgs/msg/JointState",
+        "fields": ["position.joint"],
+        "names": ["joint"],
+        "stop": "hold",
+    }
+    return contract(actions=[action], **changes)
+
+
+@asynccontextmanager
+async def recording(folder: Path, **options: Any) -> AsyncIterator[tuple[Robot, Episodes]]:
+    """Run a robot, and a recorder of episodes."""
+    async with local_context() as context:
+        robot = Robot(context)
+        async with robot.node, Episodes(folder, stamped(), context=context, **options) as episodes:
+            yield robot, episodes
+
+
+def metadata(path: Path) -> dict[str, str]:
+    """Return the metadata of a bag."""
+    with bag.open(path) as opened:
+        return opened.custom_data
+
+
+async def test_an_episode_is_a_closed_bag_with_its_task_and_outcome(tmp_path: Path) -> None:
+    """A copy of its folder is complete."""
+    async with recording(tmp_path) as (robot, episodes):
+        async with episodes.record(task="wave") as episode:
+            await robot.step(10)
+        assert (episode.outcome, episode.messages, episode.lost) == ("success", 30, 0)
+        found = metadata(episode.path)
+    assert (found["task"], found["outcome"]) == ("wave", "success")
+    assert '"fps": 30' in found["contract"]
+
+
+async def test_a_discarded_episode_is_gone(tmp_path: Path) -> None:
+    """The next one has its own number."""
+    async with recording(tmp_path) as (robot, episodes):
+        async with episodes.record() as episode:
+            await robot.step(3)
+            episode.discard()
+        assert not episode.path.exists()
+        async with episodes.record():
+            await robot.step(3)
+    assert [each.name for each in tmp_path.iterdir()] == ["episode_0000"]
+
+
+async def test_an_error_in_the_block_is_a_failure_which_an_export_leaves_out(
+    tmp_path: Path,
+) -> None:
+    """What was demonstrated is not what was wanted."""
+    async with recording(tmp_path / "runs") as (robot, episodes):
+        async with episodes.record():
+            await robot.step(30)
+
+        async def fail() -> None:
+            async with episodes.record():
+                await robot.step(30)
+                raise LookupError
+
+        with pytest.raises(LookupError):
+            await fail()
+    assert metadata(tmp_path / "runs/episode_0001")["outcome"] == "failure"
+    assert export(tmp_path / "out", [tmp_path / "runs"], jobs=1).episodes == 1
+    assert export(tmp_path / "all", [tmp_path / "runs"], jobs=1, failures=True).episodes == 2
+
+
+async def test_services_begin_and_end_episodes(tmp_path: Path) -> None:
+    """For pedals, buttons and the page of the gateway."""
+    async with recording(tmp_path) as (robot, episodes):
+
+        async def called(name: str) -> Trigger.Response:
+            client = robot.node.create_client(Trigger, f"/episodes/{name}")
+            return await client.call(Trigger.Request())
+
+        assert "no episode is being recorded" in (await called("end")).message
+        assert (await called("start")).success
+        assert "end it first" in (await called("start")).message
+        await robot.step(5)
+        assert (await called("again")).success
+        await robot.step(5)
+        answer = await called("fail")
+        assert answer.message == f"{tmp_path / 'episode_0000'}: failure"
+        assert episodes.current is None
+    assert metadata(tmp_path / "episode_0000")["outcome"] == "failure"
+
+
+async def test_a_goal_records_an_episode_until_it_is_ended(tmp_path: Path) -> None:
+    """Its result names the bag."""
+    async with recording(tmp_path) as (robot, episodes):
+        client = robot.node.create_action_client(RecordEpisode, "/episodes/record")
+        goal = await client.send_goal(RecordEpisode.Goal(task="push"))
+        while episodes.current is None:
+            await settle()
+        await robot.step(3)
+        await episodes.end()
+        result = (await goal.result()).result
+        assert (result.outcome, result.messages) == ("success", 9)
+        assert metadata(Path(result.path))["task"] == "push"
+
+
+async def test_a_goal_that_is_canceled_discards_its_episode(tmp_path: Path) -> None:
+    """Or whose client is lost."""
+    async with recording(tmp_path) as (robot, episodes):
+        client = robot.node.create_action_client(RecordEpisode, "/episodes/record")
+        goal = await client.send_goal(RecordEpisode.Goal())
+        while episodes.current is None:
+            await settle()
+        await goal.cancel()
+        await goal.result()
+        assert [*tmp_path.iterdir()] == []
+
+
+async def test_an_episode_without_a_task_is_refused(tmp_path: Path) -> None:
+    """A policy that listens to words would learn from none."""
+    async with local_context() as context:
+        silent = Episodes(tmp_path, contract(task=""), context=context)
+        async with silent:
+            with pytest.raises(EpisodeError, match="there is no task"):
+                await silent.start()
+
+
+async def test_what_was_recorded_is_exported(tmp_path: Path) -> None:
+    """With the contract and the task of the recording."""
+    async with recording(tmp_path / "runs") as (robot, episodes):
+        for _ in range(2):
+            async with episodes.record():
+                await robot.step(40)
+    exported = export(tmp_path / "out", [tmp_path / "runs"], jobs=1)
+    assert (exported.episodes, exported.problems) == (2, {})
+
+
+PROGRAM = textwrap.dedent("""
+    import asyncio, sys
+    from pathlib import Path
+    from tests.learn.test_record import recording
+
+    async def main():
+        async with recording(Path(sys.argv[1])) as (robot, episodes):
+            async with episodes.record():
+                await robot.step(60)
+                await asyncio.sleep(1.5)
+                await robot.step(3)
+                print("recorded", flush=True)
+                await asyncio.sleep(60)
+
+    asyncio.run(main())
+""")
+
+
+@pytest.mark.processes
+def test_an_episode_whose_recorder_was_killed_is_exported(tmp_path: Path) -> None:
+    """With its task and contract; nobody said how it ended."""
+    with subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, str(tmp_path / "runs")], stdout=subprocess.PIPE
+    ) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == b"recorded\n"
+        program.kill()
+    arguments = (tmp_path / "out", [tmp_path / "runs"])
+    with pytest.raises(DatasetError, match="end its recording first"):
+        export(*arguments)
+    for file in (tmp_path / "runs").rglob("*.mcap"):
+        os.utime(file, (1, 1))  # as if the kill was long ago
+    exported = export(*arguments)
+    assert 55 <= exported.rows <= 62
+    assert exported.reports[0]["outcome"] == ""
+
+
+# A running robot
+
+
+async def checked(made: Contract, *, steps: int = 30) -> Any:
+    """Check a robot that runs with a contract."""
+    async with local_context() as context:
+        robot = Robot(context)
+        async with robot.node, Node("checker", context=context) as node:
+            checking = asyncio.ensure_future(check(node, made, 0.3))  # noqa: TID251  # beside it
+            await asyncio.wait((checking,), timeout=0.05)
+            await robot.step(steps)
+            return await checking
+
+
+async def test_a_check_tells_rate_age_and_qos_of_each_topic() -> None:
+    """Before anything is recorded."""
+    found = await checked(stamped())
+    assert found.problems == []
+    assert "/camera0 (observation.images.camera0): 30 messages at 30.0 Hz" in found.text
+    assert "/joint_states (observation.state): 30 messages at 30.0 Hz; age p50 0.0" in found.text
+    assert "reliable, volatile" in found.text
+
+
+async def test_a_check_names_what_is_missing_and_what_is_near() -> None:
+    """A typing error is the usual reason."""
+    observations = contract().to_dict()["observations"]
+    observations[1]["topic"] = "/joint_state"
+    found = await checked(stamped(observations=observations))
+    assert found.problems == ["/joint_state: nobody publishes it; did you mean /joint_states?"]
+
+
+async def test_a_check_names_another_type_and_a_joint_that_is_not_there() -> None:
+    """The contract is of another robot."""
+    observations = contract().to_dict()["observations"]
+    observations[1]["fields"] = ["position.elbow", "velocity.joint"]
+    actions = [
+        {
+            "feature": "action",
+            "topic": "/command",
+            "type": "std_msgs/msg/Float64",
+            "fields": ["data"],
+            "stop": "zero",
+        }
+    ]
+    found = await checked(contract(observations=observations, actions=actions))
+    text = "\n".join(found.problems)
+    assert (
+        "/joint_states: 30 messages: sensor_msgs/msg/JointState.position.elbow: not there" in text
+    )
+    assert "/command: it is sensor_msgs/msg/JointState, and std_msgs/msg/Float64 in the" in text
+
+
+async def test_a_check_names_a_camera_of_another_rate() -> None:
+    """Its pictures would be played too fast."""
+    found = await checked(stamped(fps=50))
+    assert found.problems == ["/camera0: 30.0 Hz, and fps is 50; set the camera's rate, or fps"]
