@@ -12,9 +12,33 @@ from aionode.cli._nouns.top import top
 from aionode.cli._nouns.top.screen import TopApp
 from aionode.cli._support.output import Output
 from aionode.errors import CommandError
+from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.interfaces.std_msgs.msg import Int32
+from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
+from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import local_context, settle
+
+
+class Managed(LifecycleNode):
+    """A managed node that notes that it was configured."""
+
+    is_configured = False
+
+    def on_configure(self, state: State) -> TransitionCallbackReturn:
+        """Note it."""
+        self.is_configured = True
+        return super().on_configure(state)
+
+
+async def until_said(app: TopApp, pilot: Any, selector: str, fits: Any) -> None:
+    """Wait until a part of the screen shows something."""
+    for _ in range(500):
+        found = app.screen.query(selector)
+        if found and fits(found.first()):
+            return
+        await pilot.pause()
+    raise AssertionError(f"{selector} does not show it")
 
 
 @pytest.fixture
@@ -82,9 +106,87 @@ async def test_the_log_is_subscribed_to_when_it_is_looked_at(robot: Node) -> Non
     async with app.run_test() as pilot:
         await app.look()
         before = [each.msg_type for each in robot.subscriptions]
-        await pilot.press("7")
+        await pilot.press("8")
         await pilot.pause()
         after = [each.msg_type for each in robot.subscriptions]
 
     assert Log not in before
     assert after.count(Log) == 1
+
+
+async def test_what_nodes_say_of_themselves_is_a_table(robot: Node) -> None:
+    """It is subscribed to when it is looked at; the worst is first."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = robot.create_publisher(DiagnosticArray, "/diagnostics", latched)
+    status = [
+        DiagnosticStatus(name="fine", level=DiagnosticStatus.OK),
+        DiagnosticStatus(name="bad", level=DiagnosticStatus.ERROR, message="no device"),
+    ]
+    app = TopApp(robot, interval=1000.0)
+    async with app.run_test(size=(160, 40)) as pilot:
+        await app.look()
+        await pilot.press("7")
+        await pilot.pause()
+        publisher.publish(DiagnosticArray(status=status))
+        await settle()
+        await app.look()
+        table: Any = app.query_one("#diagnostics-table")
+
+        assert [str(each) for each in table.get_row_at(0)[:3]] == ["bad", "2 error", "no device"]
+
+
+async def test_a_field_is_plotted_over_time(robot: Node) -> None:
+    """Of the topic under the cursor; the same key ends it, and its subscription."""
+    app = TopApp(robot, interval=1000.0)
+    before = len(list(robot.subscriptions))
+    async with app.run_test(size=(160, 40)) as pilot:
+        await app.look()
+        await pilot.press("3")
+        await pilot.pause()
+        await pilot.press("f", *"wrong", "enter")
+        await pilot.pause()
+        refused = str(app.query_one("#of").render())
+        await pilot.press("f", *["backspace"] * 5, *"data", "enter")
+        await pilot.pause()
+        await robot.speak()  # type: ignore[attr-defined]  # as above
+        await app.look()
+        plot: Any = app.query_one("#plot")
+        shown = list(plot.data), str(app.query_one("#of").render())
+        await pilot.press("f")
+        await pilot.pause()
+
+    assert "no 'wrong' in it" in refused
+    assert shown == ([0, 1, 2, 3, 4], "/numbers.data: 4   (f plots rates again)")
+    assert len(list(robot.subscriptions)) == before
+
+
+async def test_a_parameter_and_a_state_are_changed_in_place() -> None:
+    """The answer of the node is shown, also if it refuses."""
+    context = local_context()
+    async with (
+        Managed("arm", context=context) as arm,
+        Node("_top", context=context) as tool,
+    ):
+        arm.declare_parameter("speed", 0.5)
+        app = TopApp(tool, interval=1000.0)
+        async with app.run_test(size=(160, 40)) as pilot:
+            await app.look()
+            await pilot.press("2")
+            await pilot.pause()
+            await pilot.press("n")
+            await until_said(app, pilot, "#rows", lambda rows: rows.row_count > 1)
+            rows: Any = app.screen.query_one("#rows")
+            rows.move_cursor(row=rows.get_row_index("parameter speed"))
+            await pilot.press("enter", *["backspace"] * 3, *"0.25", "enter")
+            await until_said(app, pilot, "#said", lambda said: "speed" in str(said.render()))
+            said = str(app.screen.query_one("#said").render())
+            await until_said(app, pilot, "#rows", lambda rows: rows.row_count > 1)
+            rows.move_cursor(row=rows.get_row_index("transition configure"))
+            await pilot.press("enter")
+            await until_said(app, pilot, "#said", lambda said: "configure" in str(said.render()))
+            changed = str(app.screen.query_one("#said").render())
+            await pilot.press("escape")
+
+        assert (said, arm.get_parameter("speed").value) == ("speed: set", 0.25)
+        assert (changed, arm.is_configured) == ("configure: done", True)
+        assert not list(tool.clients)

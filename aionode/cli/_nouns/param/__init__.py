@@ -45,7 +45,10 @@ __all__ = [
     "get",
     "list_parameters",
     "load",
+    "message_of",
     "param_command",
+    "parameter_value",
+    "parameters_of",
     "set_parameters",
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -18,11 +19,15 @@ from textual.widgets import (
     TabPane,
 )
 
-from aionode.cli._nouns.top.tables import TABLES, Table, notes, tables_of
-from aionode.errors import escaped
+from aionode.cli._nouns.top.node_screen import NodeScreen
+from aionode.cli._nouns.top.tables import TABLES, Table, diagnostics, notes, tables_of
+from aionode.cli._support import lookup
+from aionode.cli._support.field_path import field_of
+from aionode.errors import AionodeError, escaped
+from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.observe import observe, rates
-from aionode.qos import qos_profile_rosout_default
+from aionode.qos import qos_profile_rosout_default, qos_profile_sensor_data
 
 if TYPE_CHECKING:
     from aionode.node import Node
@@ -35,6 +40,12 @@ KEPT: Final = 120
 
 MOST_ROWS: Final = 500
 """The most rows of a table."""
+
+MOST_STATUSES: Final = 10_000
+"""The most statuses of /diagnostics that are remembered."""
+
+SHOWN: Final = (*TABLES, "diagnostics")
+"""The tables of the view."""
 
 LEVELS: Final = {10: "dim", 20: "", 30: "yellow", 40: "red", 50: "bold red"}
 
@@ -49,8 +60,8 @@ class TopApp(App[None]):
 
     CSS = """
     #notes { color: $error; height: auto; }
-    #filter { display: none; }
-    #filter.shown { display: block; }
+    #filter, #field { display: none; }
+    #filter.shown, #field.shown { display: block; }
     TabbedContent { height: 1fr; }
     DataTable { height: 1fr; }
     #plot { height: 3; }
@@ -63,7 +74,9 @@ class TopApp(App[None]):
         ("s", "sort", "sort by the next column"),
         ("r", "reverse", "other way round"),
         ("space", "pause", "pause"),
-        *[(str(number), f"tab('{name}')", name) for number, name in enumerate((*TABLES, "log"), 1)],
+        ("f", "field", "plot a field"),
+        ("n", "node", "change a node"),
+        *[(str(number), f"tab('{name}')", name) for number, name in enumerate((*SHOWN, "log"), 1)],
     ]
 
     def __init__(self, node: Node, interval: float = 2.0) -> None:
@@ -72,7 +85,10 @@ class TopApp(App[None]):
         self._interval = interval
         self._before: Snapshot | None = None
         self._tables: dict[str, Table] = {}
-        self._sorted: dict[str, tuple[int | None, bool]] = dict.fromkeys(TABLES, (None, False))
+        self._sorted: dict[str, tuple[int | None, bool]] = dict.fromkeys(SHOWN, (None, False))
+        self._statuses: dict[str, DiagnosticStatus] = {}
+        self._field: Field | None = None
+        self._said = ""  # why a field is not plotted
         self._wanted = ""
         self._paused = False
         self._history: dict[tuple[str, str], deque[float]] = {}
@@ -81,7 +97,7 @@ class TopApp(App[None]):
         """Make the view."""
         yield Static(id="notes")
         with TabbedContent(initial="processes"):
-            for name in TABLES:
+            for name in SHOWN:
                 with TabPane(name, id=name):
                     yield DataTable(id=f"{name}-table", cursor_type="row")
             with TabPane("log", id="log"):
@@ -89,6 +105,7 @@ class TopApp(App[None]):
         yield Static(id="of")
         yield Sparkline([], id="plot")
         yield Input(placeholder="show rows that contain …", id="filter", disabled=True)
+        yield Input(placeholder="field, as twist.twist.linear.x", id="field", disabled=True)
         yield Footer()
 
     async def on_mount(self) -> None:
@@ -103,7 +120,7 @@ class TopApp(App[None]):
         if before is None or self._paused or not self.query("#notes"):  # it ends
             return
         found = rates(before, self._before)
-        self._tables = tables_of(found)
+        self._tables = tables_of(found) | {"diagnostics": diagnostics(self._statuses.values())}
         for name, table in self._tables.items():
             if "Hz" not in table.columns:
                 continue
@@ -150,7 +167,13 @@ class TopApp(App[None]):
         return view.coordinate_to_cell_key(view.cursor_coordinate).row_key.value
 
     def plot(self, view: DataTable[Any]) -> None:
-        """Show the rate of the row under the cursor over time."""
+        """Show the rate of the row under the cursor over time, or the field that was chosen."""
+        if self._field is not None:
+            self._field.show(self.query_one("#plot", Sparkline), self.query_one("#of", Static))
+            return
+        if self._said:
+            self.query_one("#of", Static).update(Text(escaped(self._said)))
+            return
         key = self.key_of(view)
         history = self._history.get((self.shown, str(key)), deque())
         self.query_one("#plot", Sparkline).data = list(history)
@@ -174,8 +197,22 @@ class TopApp(App[None]):
         """Fill the table that is shown now; the log is subscribed to when it is looked at."""
         if self.shown == "log":
             self.hear_log()
-        else:
-            self.show()
+            return
+        if self.shown == "diagnostics":
+            self.hear_diagnostics()
+        self.show()
+
+    def hear_diagnostics(self) -> None:
+        """Subscribe to what nodes say of themselves, once."""
+        if any(each.topic_name == "/diagnostics" for each in self._node.subscriptions):
+            return
+
+        def hear(message: DiagnosticArray) -> None:
+            for status in message.status:
+                if status.name in self._statuses or len(self._statuses) < MOST_STATUSES:
+                    self._statuses[status.name] = status
+
+        self._node.create_subscription(DiagnosticArray, "/diagnostics", hear, 100)
 
     def hear_log(self) -> None:
         """Subscribe to the log, once."""
@@ -191,6 +228,7 @@ class TopApp(App[None]):
 
     def action_tab(self, name: str) -> None:
         """Show another table."""
+        self._said = ""
         self.query_one(TabbedContent).active = name
         if name in self._sorted:
             self.query_one(f"#{name}-table", DataTable).focus()
@@ -222,18 +260,104 @@ class TopApp(App[None]):
         field.add_class("shown")
         field.focus()
 
+    def action_node(self) -> None:
+        """Show the parameters and transitions of the node under the cursor."""
+        if self.shown in {"nodes", "callbacks"}:
+            view: DataTable[Any] = self.query_one(f"#{self.shown}-table", DataTable)
+            table, key = self._tables.get(self.shown), self.key_of(view)
+            if table is not None and key in table.rows:
+                self.push_screen(
+                    NodeScreen(self._node, table.rows[key][table.columns.index("node")])
+                )
+
+    def action_field(self) -> None:
+        """Ask which field of the topic under the cursor to plot; again, plot rates as before."""
+        self._said = ""
+        if self._field is not None:
+            self._field.end()
+            self._field = None
+            self.show()
+        elif self.shown == "topics" and self._tables:
+            field = self.query_one("#field", Input)
+            field.disabled = False
+            field.add_class("shown")
+            field.focus()
+
+    async def plot_field(self, path: str) -> None:
+        """Subscribe to the topic under the cursor, and plot a field."""
+        view: DataTable[Any] = self.query_one("#topics-table", DataTable)
+        topic = self.key_of(view)
+        self.query_one("#field").remove_class("shown")
+        view.focus()
+        if not path or topic not in self._tables["topics"].rows:
+            return
+        try:
+            type_name = self._tables["topics"].rows[topic][-1]
+            msg_type = await lookup.topic_type(self._node, topic, type_name)
+            self._field = Field(self._node, topic, path, msg_type)
+        except AionodeError as error:
+            self._said = str(error)
+        self.plot(view)
+
     def on_input_changed(self, event: Input.Changed) -> None:
         """Show the rows that contain what was typed."""
+        if event.input.id != "filter":
+            return
         self._wanted = event.value
         self.show()
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
+    async def on_input_submitted(self, event: Input.Submitted) -> None:
         """Go back to the table."""
+        if event.input.id == "field":
+            event.input.disabled = True
+            await self.plot_field(event.value)
+            return
         if not event.value:
             event.input.remove_class("shown")
         event.input.disabled = True
         if self.shown in self._sorted:
             self.query_one(f"#{self.shown}-table", DataTable).focus()
+
+
+class Field:
+    """A field of a topic over time.
+
+    Args:
+        node: The command's node.
+        topic: The topic, which it subscribes to.
+        path: The path of the field.
+        msg_type: The type of the topic.
+
+    Raises:
+        CommandError: the type has no such field.
+    """
+
+    def __init__(self, node: Node, topic: str, path: str, msg_type: Any) -> None:
+        if "[" not in path:  # an array of a message that nobody has sent is empty
+            field_of(msg_type(), path)
+        self._name, self._path = f"{topic}.{path}", path
+        self._values: deque[float] = deque(maxlen=KEPT)
+        self._problem = "nothing yet"
+        self._subscription = node.create_subscription(
+            msg_type, topic, self._hear, qos_profile_sensor_data
+        )
+
+    def _hear(self, message: Any) -> None:
+        try:
+            value, _ = field_of(message, self._path)
+            self._values.append(float(value))
+        except (AionodeError, TypeError, ValueError) as error:
+            self._problem = str(error)
+
+    def show(self, plot: Sparkline, of: Static) -> None:
+        """Draw it."""
+        plot.data = [value for value in self._values if math.isfinite(value)]
+        newest = f"{self._values[-1]:.6g}" if self._values else self._problem
+        of.update(Text(escaped(f"{self._name}: {newest}   (f plots rates again)")))
+
+    def end(self) -> None:
+        """Subscribe no more."""
+        self._subscription.destroy()
 
 
 def cell_of(value: Any) -> Text:

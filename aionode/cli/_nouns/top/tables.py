@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from aionode.interfaces.diagnostic_msgs.msg import DiagnosticStatus
     from aionode.observe import EntityRate, Rates
 
-__all__ = ["TABLES", "Table", "notes", "record_of", "tables_of", "text_of"]
+__all__ = ["TABLES", "Table", "diagnostics", "notes", "record_of", "tables_of", "text_of"]
 
 LOST: Final = ("dropped", "lost", "expired")
+
+LEVELS: Final = ("0 ok", "1 warning", "2 error", "3 stale")
+"""The levels of statuses, in their order."""
 
 TABLES: Final = ("processes", "nodes", "topics", "services", "actions", "callbacks")
 
@@ -191,6 +195,20 @@ def callbacks(entities: list[EntityRate]) -> Table:
             milliseconds(entity, "blocking", 99),
             0.0 if blocking is None else round(blocking.max_ns / 1e6, 3),
             report.counts.get("errors", 0),
+        )
+    return table
+
+
+def diagnostics(statuses: Iterable[DiagnosticStatus]) -> Table:
+    """Return what nodes say of themselves and their devices, the worst first."""
+    table = Table(("status", "level", "message", "hardware"), sorted_by=1, descending=True)
+    for status in statuses:
+        level = status.level[0]
+        table.rows[status.name] = (
+            status.name,
+            LEVELS[level] if level < len(LEVELS) else str(level),
+            status.message,
+            status.hardware_id,
         )
     return table
 
