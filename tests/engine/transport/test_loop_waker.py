@@ -1,4 +1,4 @@
-"""From foreign threads to the loop."""
+"""Handing calls from other threads to the event loop."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, Thre
 async def woken(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> AsyncIterator[LoopWaker]:
-    """A wake-up for the running loop, by each of its two means."""
+    """A waker of the running loop, in each of its two variants."""
     if request.param == "socketpair":
         monkeypatch.delattr(os, "eventfd", raising=False)
     elif not hasattr(os, "eventfd"):
@@ -44,7 +44,7 @@ def in_thread(*calls: Callable[[], None]) -> None:
 
 
 async def test_what_a_thread_puts_is_handled_on_the_loop_in_order(woken: LoopWaker) -> None:
-    """Order is what a topic promises, and the loop's thread is where callbacks may run."""
+    """A topic guarantees order, and callbacks may run only in the loop's thread."""
     taken: list[tuple[int, int]] = []
     done = asyncio.Event()
 
@@ -63,7 +63,7 @@ async def test_what_a_thread_puts_is_handled_on_the_loop_in_order(woken: LoopWak
 async def test_a_burst_wakes_the_loop_once(
     woken: LoopWaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A system call for each message would cost more than the message."""
+    """A system call for each message would cost more than the message itself."""
     wakes = 0
     wake = woken._wake
     taken: list[int] = []
@@ -86,9 +86,10 @@ async def test_a_burst_wakes_the_loop_once(
 async def test_other_callbacks_run_in_between(
     woken: LoopWaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However much comes, a timer still fires."""
+    """A timer still fires, however much arrives."""
     clock: Iterator[int] = iter(range(0, 10**12, SLICE_NS))
-    monkeypatch.setattr(loop_waker, "perf_ns", lambda: next(clock))  # each look is a slice later
+    # # each time is one slice later
+    monkeypatch.setattr(loop_waker, "perf_ns", lambda: next(clock))
     order: list[str] = []
 
     def take(item: int) -> None:
@@ -105,7 +106,7 @@ async def test_other_callbacks_run_in_between(
 
 
 async def test_a_busy_queue_lets_the_others_have_their_turn(woken: LoopWaker) -> None:
-    """A flood on one topic does not hold up another."""
+    """A flood on one topic does not delay another."""
     order: list[str] = []
     busy = ThreadsafeQueue[None](woken, lambda _: order.append("busy"))
     calm = ThreadsafeQueue[None](woken, lambda _: order.append("calm"))
@@ -118,7 +119,7 @@ async def test_a_busy_queue_lets_the_others_have_their_turn(woken: LoopWaker) ->
 
 
 async def test_a_full_queue_drops_its_oldest(woken: LoopWaker) -> None:
-    """Nothing grows without limit while the loop is busy."""
+    """Memory stays limited while the loop is busy."""
     taken: list[int] = []
     queue = ThreadsafeQueue(woken, taken.append, limit=3)
     in_thread(*(partial(queue.put, n) for n in range(10)))
@@ -128,7 +129,7 @@ async def test_a_full_queue_drops_its_oldest(woken: LoopWaker) -> None:
 
 
 async def test_what_arrives_while_closed_waits_for_the_next_opening(woken: LoopWaker) -> None:
-    """A context may be opened again, and nothing is written to a closed descriptor meanwhile."""
+    """A context may be reopened, and nothing is written to a closed descriptor meanwhile."""
     taken: list[int] = []
     queue = ThreadsafeQueue(woken, taken.append)
     woken.close()
@@ -142,7 +143,7 @@ async def test_what_arrives_while_closed_waits_for_the_next_opening(woken: LoopW
 
 
 async def test_a_handler_that_fails_does_not_stop_the_rest(woken: LoopWaker) -> None:
-    """A bug in one place is reported by the loop, and the others go on."""
+    """The loop reports the error, and other handlers continue."""
     reported: list[object] = []
     taken: list[int] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, what: reported.append(what))
@@ -162,7 +163,7 @@ async def test_a_handler_that_fails_does_not_stop_the_rest(woken: LoopWaker) -> 
 
 
 async def drained(woken: LoopWaker) -> None:
-    """Wait until everything put before has been handled."""
+    """Wait until everything queued before has been handled."""
     last = asyncio.Event()
     ThreadsafeQueue[None](woken, lambda _: last.set()).put(None)
     await last.wait()
@@ -171,7 +172,7 @@ async def drained(woken: LoopWaker) -> None:
 
 
 async def test_a_queue_may_be_cleared_by_what_it_calls(woken: LoopWaker) -> None:
-    """A callback may run from there, and destroy its subscription."""
+    """A callback may run from there and destroy its subscription."""
     reported: list[object] = []
     taken: list[int] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, what: reported.append(what))
@@ -193,13 +194,13 @@ async def test_a_queue_may_be_cleared_by_what_it_calls(woken: LoopWaker) -> None
 async def test_callbacks_may_run_for_a_slice_of_time(
     woken: LoopWaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The slice is computed once for each event, and ends with it."""
+    """The slice is computed once per event, and ends with it."""
     seen: list[int] = []
     lanes = [
         ThreadsafeQueue[int](woken, lambda _: seen.append(woken.inline_deadline_ns))
         for _ in range(2)
     ]
-    monkeypatch.setattr(loop_waker, "SLICE_NS", 10**12)  # no pause of the machine is as long
+    monkeypatch.setattr(loop_waker, "SLICE_NS", 10**12)  # # no pause of the machine lasts that long
     before_ns = perf_ns()
     in_thread(*(partial(queue.put, 0) for queue in lanes * 2))
     await drained(woken)
@@ -212,7 +213,7 @@ async def test_callbacks_may_run_for_a_slice_of_time(
 
 
 class Arrivals:
-    """Messages from a thread, as byte strings, and what became of them."""
+    """Byte strings sent from a thread as messages, and their outcomes."""
 
     def __init__(self, waker: LoopWaker, limit: int, limit_bytes: int) -> None:
         self.taken: list[bytes] = []
@@ -222,11 +223,11 @@ class Arrivals:
         )
 
     def drop(self, count: int) -> None:
-        """Count."""
+        """Count dropped messages."""
         self.dropped += count
 
     async def until_empty(self) -> None:
-        """Let the loop take everything."""
+        """Let the loop handle everything."""
         while len(self.queue):
             await checkpoint()
 
@@ -234,7 +235,7 @@ class Arrivals:
 async def test_messages_beyond_the_bytes_of_a_queue_are_dropped_and_counted(
     woken: LoopWaker,
 ) -> None:
-    """A loop that is busy for some seconds held gigabytes of them."""
+    """A loop that was busy for some seconds used to hold gigabytes of them."""
     arrivals = Arrivals(woken, 10_000, 1_000_000)
     messages = [bytes([number]) * 100_000 for number in range(200)]
     in_thread(*(partial(arrivals.queue.put, message) for message in messages))
@@ -247,7 +248,7 @@ async def test_messages_beyond_the_bytes_of_a_queue_are_dropped_and_counted(
 
 
 async def test_one_message_waits_whatever_its_size(woken: LoopWaker) -> None:
-    """The limit is one for queues, and not for messages."""
+    """The limit applies to queues, not to a single message."""
     arrivals = Arrivals(woken, 10_000, 1_000)
     large = bytes(100_000)
     in_thread(*(partial(arrivals.queue.put, message) for message in [b""] * 8 + [large]))
@@ -260,7 +261,7 @@ async def test_one_message_waits_whatever_its_size(woken: LoopWaker) -> None:
 async def test_messages_of_one_thread_stay_in_order_while_others_are_taken(
     woken: LoopWaker,
 ) -> None:
-    """Some are measured and some are not, and the loop takes from both at the same time."""
+    """Some have a size and some do not, and the loop takes from both at the same time."""
     arrivals = Arrivals(woken, 100_000, 1 << 30)
     messages = [number.to_bytes(4, "big") for number in range(20_000)]
 
@@ -278,7 +279,7 @@ async def test_messages_of_one_thread_stay_in_order_while_others_are_taken(
 
 
 async def test_messages_beyond_their_number_push_out_the_oldest(woken: LoopWaker) -> None:
-    """As in any of these queues; the publisher sends them again, or the numbers show the gap."""
+    """As in all of these queues; the publisher retransmits them, or the numbers show the gap."""
     arrivals = Arrivals(woken, 20, 1 << 30)
     messages = [number.to_bytes(4, "big") for number in range(100)]
     in_thread(*(partial(arrivals.queue.put, message) for message in messages))

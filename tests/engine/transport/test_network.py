@@ -1,4 +1,4 @@
-"""The network of a context: environment and arguments become a Zenoh configuration."""
+"""The network of a context: how environment and arguments become a Zenoh configuration."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ H1, H2, H3 = MEETING_PORTS
 
 
 def test_nothing_set_means_this_machine_and_domain_0() -> None:
-    """Two terminals find each other without configuration."""
+    """Programs in two terminals find each other without configuration."""
     assert network_from({}) == Network(
         domain_id=0,
         discovery_range=DiscoveryRange.LOCALHOST,
@@ -41,12 +41,12 @@ def test_nothing_set_means_this_machine_and_domain_0() -> None:
 
 @pytest.mark.parametrize("text", ["", "0", "00", " 0 "])
 def test_an_empty_variable_is_none(text: str) -> None:
-    """Shells set variables to nothing to unset them."""
+    """In a shell, setting a variable to nothing is a common way to unset it."""
     assert network_from({"ROS_DOMAIN_ID": text}).domain_id == 0
 
 
 def test_arguments_win_over_the_environment() -> None:
-    """A program knows better than the shell that it was started in."""
+    """A program knows better than the shell that started it."""
     environ = {
         "ROS_DOMAIN_ID": "1",
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF",
@@ -115,13 +115,13 @@ def test_localhost_only_overrules_the_variables_that_replaced_it(
 def test_an_error_names_the_variable_what_it_says_and_what_fits(
     environ: dict[str, str], named: str
 ) -> None:
-    """The one who set it reads it, far from the code."""
+    """Whoever set the variable reads the error, far from the code."""
     with pytest.raises(ConfigurationError, match=named):
         network_from(environ)
 
 
 def test_an_error_names_the_argument() -> None:
-    """The same check, another source."""
+    """The check is the same, only the source differs."""
     with pytest.raises(ConfigurationError, match="domain_id: '-1' given"):
         network_from({}, domain_id=-1)
     with pytest.raises(TypeError, match="domain_id: '5' given; use an integer"):
@@ -143,12 +143,12 @@ def test_an_error_names_the_argument() -> None:
     ],
 )
 def test_a_peer_is_a_host_a_port_or_an_endpoint(peer: str, endpoints: list[str]) -> None:
-    """Without a port, wherever a router or an aionode process could listen."""
+    """Without a port: wherever a router or an aionode process could listen."""
     assert list(network_from({"ROS_STATIC_PEERS": f"; {peer};"}).static_peers) == endpoints
 
 
 def test_meeting_ports_beyond_three_are_spare() -> None:
-    """They are used if other programs have all three."""
+    """They are used if other programs occupy all three."""
     network = network_from({"AIONODE_MEETING_PORTS": "1,2,3,4,5"})
 
     assert network.meeting_ports == (1, 2, 3)
@@ -161,7 +161,7 @@ def test_each_domain_has_ports_of_its_own() -> None:
     ports = [p for each in domains for p in (*each.meeting_ports, *each.spare_ports)]
 
     assert len(set(ports)) == len(ports)
-    assert max(ports) < 32_768  # where the ephemeral ports begin
+    assert max(ports) < 32_768  # # the start of the ephemeral ports
     assert [domain_of_port(each.meeting_ports[0]) for each in domains] == list(
         range(DOMAINS_WITH_PORTS)
     )
@@ -170,14 +170,14 @@ def test_each_domain_has_ports_of_its_own() -> None:
 
 @pytest.mark.parametrize("domain_id", [DOMAINS_WITH_PORTS + 3, 2**32 - 1])
 def test_domains_beyond_those_with_ports_share_them(domain_id: int) -> None:
-    """ROS allows four thousand million of them."""
+    """ROS allows four billion domains."""
     shared = network_from({}, domain_id=domain_id % DOMAINS_WITH_PORTS)
 
     assert network_from({}, domain_id=domain_id).meeting_ports == shared.meeting_ports
 
 
 def test_all_domains_meet_at_ports_that_are_set() -> None:
-    """So that domains can be joined on purpose."""
+    """Domains can then be joined on purpose."""
     environ = {"AIONODE_MEETING_PORTS": "1,2,3"}
 
     assert network_from(environ, domain_id=7).meeting_ports == (1, 2, 3)
@@ -185,17 +185,17 @@ def test_all_domains_meet_at_ports_that_are_set() -> None:
 
 @pytest.mark.parametrize("first", [0, 17448, 17450, 17449 + 6 * DOMAINS_WITH_PORTS])
 def test_other_ports_belong_to_no_domain(first: int) -> None:
-    """They were set, or are another program's."""
+    """They were configured explicitly, or belong to another program."""
     assert domain_of_port(first) is None
 
 
 def settings(network: Network, *answering: int) -> dict[str, Any]:
-    """Return the settings when other processes listen on these ports."""
+    """Return the settings while other processes listen on these ports."""
     return session_settings(network, answering)
 
 
 def test_a_session_dials_those_that_are_listed_and_listens_at_one_port() -> None:
-    """A second way to the same session would be a connection that fails for ever."""
+    """A second connection to the same session would fail forever."""
     found = session_settings(Network(), (), Neighbours(H1, (40001, 40002)))
 
     assert found["listen/endpoints"] == [f"tcp/127.0.0.1:{H1}"]
@@ -218,7 +218,7 @@ def test_a_session_dials_those_that_are_listed_and_listens_at_one_port() -> None
 def test_a_listed_session_introduces_peers_only_if_some_cannot_be_listed(
     network: Network, port: int, *, introduces: bool
 ) -> None:
-    """Each would tell all others of each new one; routers introduce as those of ROS do."""
+    """Otherwise each would announce every newcomer to all others, as routers of ROS do."""
     others = tuple(range(41000, 41000 + GOSSIPING))
     found = session_settings(network, (), Neighbours(port, others))
 
@@ -228,14 +228,14 @@ def test_a_listed_session_introduces_peers_only_if_some_cannot_be_listed(
 
 
 def test_the_first_sessions_introduce_others_wherever_they_listen() -> None:
-    """More than one: what Zenoh hears on a connection that is being made is lost."""
+    """More than one does, because gossip is lost on a connection that is still being made."""
     few = tuple(range(41000, 41000 + GOSSIPING - 1))
 
     assert "scouting/gossip/target" not in session_settings(Network(), (), Neighbours(40000, few))
 
 
 def test_a_session_that_connects_with_many_may_be_silent_for_longer() -> None:
-    """Otherwise those that are connected first give it up while it connects with the last ones."""
+    """Otherwise sessions connected early would give it up while it connects to the last ones."""
     lease = "transport/link/tx/lease"
 
     assert session_settings(Network(), ())[lease] == 10_000
@@ -245,7 +245,7 @@ def test_a_session_that_connects_with_many_may_be_silent_for_longer() -> None:
 
 
 def test_no_number_of_listed_sessions_makes_a_lease_longer_than_that_of_ros_2() -> None:
-    """Any user of the machine can be listed as many processes, which answer nobody."""
+    """Any local user can list any number of processes that never answer."""
     lies = Neighbours(40000, tuple(range(41000, 42000)))
 
     assert session_settings(Network(), (), lies)["transport/link/tx/lease"] == 60_000
@@ -260,7 +260,7 @@ def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -
 
 
 def test_a_free_meeting_port_is_taken_over() -> None:
-    """When the process that held it has gone, newcomers still meet."""
+    """When the process that held it has gone, newcomers can still meet there."""
     found = settings(Network(), H1, H3)
 
     assert found["listen/endpoints"][0] == f"tcp/127.0.0.1:{H2}"
@@ -268,7 +268,7 @@ def test_a_free_meeting_port_is_taken_over() -> None:
 
 
 def test_without_a_free_meeting_port_all_are_dialled() -> None:
-    """The fourth process and all after it."""
+    """This applies to the fourth process and all after it."""
     found = settings(Network(), H1, H2, H3)
 
     assert found["listen/endpoints"] == ["tcp/127.0.0.1:0"]
@@ -286,7 +286,7 @@ def test_only_subnet_listens_beyond_loopback(discovery_range: DiscoveryRange) ->
 
 
 def test_off_neither_listens_nor_dials() -> None:
-    """Static peers included: off is off."""
+    """Not even static peers."""
     network = Network(discovery_range=DiscoveryRange.OFF, static_peers=("tcp/a:1",))
 
     assert probed_ports(network) == ()
@@ -303,7 +303,7 @@ def test_the_system_default_is_that_of_rmw_zenoh() -> None:
 
 
 def test_a_session_dials_static_peers_of_its_own_machine_only() -> None:
-    """A router of the machine dials the others, and the session finds that as always."""
+    """A router of the machine dials the others, and the session finds that router as always."""
     network = Network(static_peers=("tls/robot:7447", "tls/localhost:7448"))
     found = settings(network)
 
@@ -331,7 +331,7 @@ def test_what_is_near_is_seen_from_the_text_of_an_endpoint(endpoint: str, near: 
 
 
 def test_a_file_takes_the_place_of_all_settings() -> None:
-    """Its author decides; only overrides are put on top."""
+    """Its author decides; only overrides are applied on top of it."""
     network = network_from(
         {"ZENOH_SESSION_CONFIG_URI": "/a.json5", "ZENOH_CONFIG_OVERRIDE": "mode='client';x/y=[1]"}
     )
@@ -342,7 +342,7 @@ def test_a_file_takes_the_place_of_all_settings() -> None:
 
 
 def test_single_settings_win_over_the_environment() -> None:
-    """They come last, as JSON."""
+    """They are applied last, as JSON."""
     network = network_from(
         {"ZENOH_CONFIG_OVERRIDE": "a=1"}, config={"transport/shared_memory/enabled": False}
     )
@@ -352,7 +352,7 @@ def test_single_settings_win_over_the_environment() -> None:
 
 @pytest.mark.parametrize(("name", "usual"), [("queue_bytes", 32 << 20), ("graph_bytes", 64 << 20)])
 def test_limits_in_bytes_are_set_by_argument_or_environment(name: str, usual: int) -> None:
-    """A robot that sends clouds of a gigabyte on purpose needs more than others."""
+    """A robot that sends clouds of a gigabyte on purpose needs higher limits."""
     variable = f"AIONODE_{name.upper()}"
     environ = {variable: "1000000"}
 
@@ -379,7 +379,7 @@ def test_limits_in_bytes_are_set_by_argument_or_environment(name: str, usual: in
     ],
 )
 def test_zenoh_knows_every_setting(found: dict[str, Any]) -> None:
-    """A key path that a release of Zenoh renames would fail at the first start."""
+    """Otherwise a key path renamed by a release of Zenoh would fail at the first start."""
     config = zenoh.Config()
     for key, value in found.items():
         config.insert_json5(key, json.dumps(value))

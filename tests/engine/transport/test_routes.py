@@ -1,4 +1,4 @@
-"""The routes of messages as statistics show them, and what contexts announce of their links."""
+"""The routes of messages in statistics, and what contexts announce about their links."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["folder"]  # a fixture
 
 
 async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
-    """Beside one of this context, which is reached without."""
+    """A subscription in the same context is reached without Zenoh."""
     async with two_nodes(links=(False, False)) as nodes:
         readers = [node.create_subscription(Int32, "n") for node in nodes]
         publisher = nodes.a.create_publisher(Int32, "n", 10)
@@ -37,7 +37,7 @@ async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
 
 
 async def test_a_linked_subscription_is_reached_both_ways_beside_an_unannounced_peer() -> None:
-    """And by the link alone otherwise."""
+    """Otherwise only the link is used."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -48,7 +48,7 @@ async def test_a_linked_subscription_is_reached_both_ways_beside_an_unannounced_
 
 
 async def test_what_late_readers_get_goes_by_zenoh() -> None:
-    """Zenoh keeps it for them, with links or without."""
+    """Zenoh keeps the messages for late readers, with or without links."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         late = nodes.a.create_publisher(Int32, "late", kept(1))
@@ -59,7 +59,7 @@ async def test_what_late_readers_get_goes_by_zenoh() -> None:
 
 
 async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
-    """The other end cannot: it has not seen it."""
+    """The other end cannot count what it never received."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 10)
         await numbers.until_linked()
@@ -75,13 +75,13 @@ async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
 
 
 async def links_seen_by(context: Context) -> LinkStatus:
-    """Return what a context is told."""
+    """Return the links announced to a context."""
     _, transport, _ = context.transports
     return await transport.link_status()
 
 
 async def test_contexts_that_ask_are_told_of_a_link_while_it_is_there() -> None:
-    """Also to a context that takes part in none."""
+    """Including a context that has no link itself."""
     async with Context(link=False) as aside, two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -98,7 +98,7 @@ async def test_contexts_that_ask_are_told_of_a_link_while_it_is_there() -> None:
 
 
 async def test_contexts_that_ask_are_told_of_a_link_that_comes_again() -> None:
-    """Both ends have seen the end of the first one."""
+    """By then both ends have noticed the end of the first one."""
     async with Context(link=False) as aside, two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()

@@ -33,7 +33,7 @@ __all__ = ["folder"]  # a fixture
 
 
 def calls_of(work: Callable[[], Any]) -> int:
-    """Return how many functions are called, those in C included."""
+    """Return how many functions are called, including those in C."""
     count = 0
 
     def note(_frame: object, event: str, _arg: object) -> None:
@@ -49,7 +49,7 @@ def calls_of(work: Callable[[], Any]) -> int:
 
 
 def costs(node: Node, count: int) -> tuple[list[int], list[int]]:
-    """Return how many calls it takes to make each of many pairs, and to destroy each."""
+    """Return how many calls it takes to create each of many pairs, and to destroy each."""
     pairs: list[tuple[Any, Any]] = []
 
     def make() -> None:
@@ -65,7 +65,7 @@ def costs(node: Node, count: int) -> tuple[list[int], list[int]]:
 
 
 async def test_making_and_destroying_endpoints_of_one_process_is_linear() -> None:
-    """Of many others, none is looked at."""
+    """No other endpoint is looked at."""
     async with Node("n", context=local_context()) as node:
         made, destroyed = costs(node, 200)
 
@@ -74,7 +74,7 @@ async def test_making_and_destroying_endpoints_of_one_process_is_linear() -> Non
 
 
 async def test_making_and_destroying_endpoints_beside_links_is_linear() -> None:
-    """Of the others in this process, none is looked at."""
+    """No other endpoint of this process is looked at."""
     async with asyncio.timeout(30), two_nodes() as nodes:
         made, destroyed = costs(nodes.a, 100)
 
@@ -83,7 +83,7 @@ async def test_making_and_destroying_endpoints_beside_links_is_linear() -> None:
 
 
 async def test_a_subscription_of_another_process_concerns_publishers_of_its_name_only() -> None:
-    """Otherwise it would cost more the more publishers there are here."""
+    """Otherwise its cost would grow with the number of publishers here."""
     async with asyncio.timeout(30), two_nodes() as nodes:
         near = nodes.a.create_publisher(Int32, "near", 10)
         far = [nodes.a.create_publisher(Int32, f"far{number}", 10) for number in range(20)]
@@ -101,7 +101,7 @@ async def test_a_subscription_of_another_process_concerns_publishers_of_its_name
 
 
 async def test_a_subscription_of_another_context_costs_the_same_beside_many() -> None:
-    """Else many publishers and subscriptions of one topic would cost the cube of their number."""
+    """Otherwise the cost of one topic would grow with the cube of its endpoints."""
     async with asyncio.timeout(30), two_nodes() as nodes:
         publisher = nodes.a.create_publisher(Int32, "many", 10)
         state = transport_of(nodes.a).zenoh.session_state  # type: ignore[attr-defined]  # Zenoh's
@@ -138,7 +138,7 @@ async def test_a_subscription_of_another_context_costs_the_same_beside_many() ->
 async def test_handing_subscriptions_over_to_a_link_costs_the_same_beside_many(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """With 3000 endpoints of another process it took 10 to 52 s."""
+    """It used to take 10 to 52 s with 3000 endpoints of another process."""
     costs: dict[type, list[int]] = defaultdict(list)
     on_control = LinkManager.on_control
 
@@ -161,7 +161,7 @@ async def test_handing_subscriptions_over_to_a_link_costs_the_same_beside_many(
 
 
 async def test_a_link_to_many_endpoints_looks_at_each_of_them_once() -> None:
-    """It comes up while thousands are known already."""
+    """The link comes up when thousands are already known."""
     async with asyncio.timeout(30), two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()

@@ -1,4 +1,4 @@
-"""Sending from a thread."""
+"""Sending from a separate thread."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ async def send_thread() -> AsyncIterator[SendThread]:
 
 
 def blocked(send_queue: SendQueue) -> threading.Event:
-    """Have the thread wait for the returned event."""
+    """Make the thread wait for the returned event."""
     began, gate = threading.Event(), threading.Event()
 
     def wait() -> None:
@@ -38,7 +38,7 @@ def blocked(send_queue: SendQueue) -> threading.Event:
 
 
 async def test_sends_happen_in_order_and_drain_waits_for_them(send_thread: SendThread) -> None:
-    """Order is what a topic promises."""
+    """A topic guarantees order."""
     sent: list[int] = []
     send_queue = send_thread.send_queue(1000, keep_all=True)
     for n in range(100):
@@ -51,7 +51,7 @@ async def test_sends_happen_in_order_and_drain_waits_for_them(send_thread: SendT
 
 
 async def test_a_full_queue_that_keeps_all_has_no_room(send_thread: SendThread) -> None:
-    """The publisher is told, and nothing is lost."""
+    """The publisher is told, and no message is lost."""
     send_queue = send_thread.send_queue(3, keep_all=True)
     gate = blocked(send_queue)
     send_queue.put(lambda: None)
@@ -66,7 +66,7 @@ async def test_a_full_queue_that_keeps_all_has_no_room(send_thread: SendThread) 
 
 
 async def test_a_full_queue_that_keeps_the_last_drops_its_oldest(send_thread: SendThread) -> None:
-    """A slow link gets the newest image, not a long queue of old ones."""
+    """Over a slow link the newest image arrives, rather than a long queue of old ones."""
     sent: list[int] = []
     send_queue = send_thread.send_queue(2, keep_all=False)
     gate = blocked(send_queue)
@@ -81,7 +81,7 @@ async def test_a_full_queue_that_keeps_the_last_drops_its_oldest(send_thread: Se
 
 
 async def test_the_loop_goes_on_while_a_send_blocks(send_thread: SendThread) -> None:
-    """That is what the thread is for."""
+    """This is the purpose of the thread."""
     send_queue = send_thread.send_queue(2, keep_all=True)
     gate = blocked(send_queue)
     drained = asyncio.get_running_loop().create_task(send_queue.drain())
@@ -97,7 +97,7 @@ async def test_the_loop_goes_on_while_a_send_blocks(send_thread: SendThread) -> 
 async def test_a_flushed_sender_has_no_thread_and_starts_another_when_needed(
     send_thread: SendThread,
 ) -> None:
-    """A closed context leaves no thread, and may be opened again."""
+    """A closed context leaves no thread behind, and may be reopened."""
     send_queue = send_thread.send_queue(2, keep_all=True)
     for _ in range(2):
         send_queue.put(lambda: None)
@@ -109,7 +109,7 @@ async def test_a_flushed_sender_has_no_thread_and_starts_another_when_needed(
 
 
 async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(send_thread: SendThread) -> None:
-    """At the end of a publisher whose readers take nothing."""
+    """This happens at the end of a publisher whose readers do not read."""
     lost: list[int] = []
     send_queue = send_thread.send_queue(10, keep_all=True, lost=lost.append)
     gate = blocked(send_queue)
@@ -128,7 +128,7 @@ async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(send_thread: 
 async def test_jobs_run_in_the_calling_thread_when_no_thread_can_be_started(
     send_thread: SendThread, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While the interpreter shuts down: a loop in another thread still has messages to send."""
+    """While the interpreter shuts down, another thread's loop may still have messages to send."""
 
     def refuse(_: threading.Thread) -> None:
         raise RuntimeError("can't create new thread at interpreter shutdown")
@@ -146,7 +146,7 @@ async def test_jobs_run_in_the_calling_thread_when_no_thread_can_be_started(
 async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(
     send_thread: SendThread,
 ) -> None:
-    """A thread that comes back from Zenoh while the interpreter ends aborts the process."""
+    """A thread that returns from Zenoh while the interpreter exits would abort the process."""
     send_queue = send_thread.send_queue(10, keep_all=True)
     gate = blocked(send_queue)
     sent: list[int] = []
@@ -159,7 +159,7 @@ async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(
 
 
 def test_a_process_that_exits_waits_for_the_send_that_a_thread_is_in() -> None:
-    """Its end must not meet a thread inside Zenoh, which would abort it (SIGABRT)."""
+    """Exiting while a thread is inside Zenoh would abort the process (SIGABRT)."""
     program = """
 import os, threading, time
 from aionode.engine.transport.loop_waker import LoopWaker
@@ -181,7 +181,7 @@ began.wait()
 
 
 def test_a_process_that_exits_waits_for_a_thread_that_a_daemon_has_started() -> None:
-    """It is a daemon then, too: Python would end while it is inside Zenoh."""
+    """The thread is then a daemon too, and Python would exit while it is inside Zenoh."""
     program = """
 import os, threading, time
 from aionode.engine.transport.send_thread import start_thread

@@ -1,4 +1,4 @@
-"""Transforms over every transport: both ways, and static ones for those who come late."""
+"""Transforms over every transport, in both directions; late joiners get static ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.support.transforms import senders, transform
 __all__ = ["pair"]  # the fixture
 
 ROS_PACKAGES = ("tf2_msgs",)
-"""What the installed ROS must have besides."""
+"""Packages that the installed ROS must have."""
 
 
 async def test_a_late_buffer_has_static_transforms_and_awaits_the_others(pair: Pair) -> None:

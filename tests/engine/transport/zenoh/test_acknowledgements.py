@@ -1,4 +1,4 @@
-"""Reliable topics over Zenoh: acknowledged where both ends can, and else left to Zenoh.
+"""Reliable topics over Zenoh: acknowledged if both ends support it, otherwise left to Zenoh.
 
 The protocol itself is tested without a network: tests/engine/transport/reliability.
 """
@@ -53,18 +53,18 @@ TRANSIENT = QoSProfile(history=HistoryPolicy.KEEP_ALL, durability=DurabilityPoli
 ACKNACK = SubmessageKind.ACKNACK
 
 Writers = dict[str, ZenohWriter]
-"""The end in Zenoh of each topic's last publisher, by the name of the topic."""
+"""The Zenoh side of each topic's last publisher, by the name of the topic."""
 
 
 @pytest.fixture(autouse=True)
 def without_links(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Links are off, as between hosts."""
+    """Disable links, as between hosts."""
     monkeypatch.setenv("AIONODE_LINK", "off")
 
 
 @pytest.fixture
 def writers(monkeypatch: pytest.MonkeyPatch) -> Writers:
-    """The ends in Zenoh of publishers that a test makes."""
+    """The Zenoh side of each publisher that a test creates."""
     created: Writers = {}
     create_writer = ZenohTransport.create_writer
 
@@ -79,7 +79,7 @@ def writers(monkeypatch: pytest.MonkeyPatch) -> Writers:
 
 @asynccontextmanager
 async def two_nodes() -> AsyncIterator[tuple[Node, Node]]:
-    """Two nodes of two contexts."""
+    """Two nodes in two contexts."""
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,
@@ -95,7 +95,7 @@ def state_of(context: Context) -> SessionState:
 
 
 class Overheard:
-    """The submessages that another process hears.
+    """The submessages that another process receives.
 
     Args:
         session: Its session.
@@ -107,7 +107,7 @@ class Overheard:
         session.declare_subscriber(f"{DOMAIN_ID}/{topic}/*/*/@aionode/*/**", self._samples)
 
     def submessages(self) -> list[tuple[str, Submessage]]:
-        """Return the key of each, and what it says."""
+        """Return the key and content of each."""
         pairs = [
             (str(each.key_expr), acknack.unpack(each.payload.to_bytes()))
             for each in self._samples.items
@@ -151,7 +151,7 @@ async def test_the_log_gives_a_publisher_a_remedy_that_it_does_not_use_yet(
 async def test_what_is_lost_on_the_way_is_sent_again(
     qos: QoSProfile, theirs: QoSProfile, monkeypatch: pytest.MonkeyPatch, writers: Writers
 ) -> None:
-    """Every third message here, the last one included."""
+    """Here every third message is lost, including the last one."""
     put, count = ZenohSender.put, 0
 
     def put_some(self: ZenohSender, payload: bytes, extra: bytes) -> None:
@@ -179,8 +179,8 @@ async def test_what_is_lost_on_the_way_is_sent_again(
 async def without_acknowledgements(
     monkeypatch: pytest.MonkeyPatch,
 ) -> AsyncIterator[tuple[Node, Node]]:
-    """Two nodes, of which each takes the other for an older aionode, or a ROS 2 node."""
-    monkeypatch.setattr(acknowledgements, "LONGEST_ID", 0)  # so the token of nobody counts
+    """Two nodes, each of which takes the other for an older aionode or a ROS 2 node."""
+    monkeypatch.setattr(acknowledgements, "LONGEST_ID", 0)  # # so no token counts
     async with two_nodes() as nodes:
         yield nodes
 
@@ -188,7 +188,7 @@ async def without_acknowledgements(
 async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
     monkeypatch: pytest.MonkeyPatch, writers: Writers
 ) -> None:
-    """An older aionode; as a ROS 2 node, it is left to Zenoh."""
+    """With an older aionode, as with a ROS 2 node, delivery is left to Zenoh."""
     async with without_acknowledgements(monkeypatch) as (a, b):
         publisher = a.create_publisher(String, "n", KEEP_ALL)
         subscription = b.create_subscription(String, "n", None, KEEP_ALL)
@@ -206,9 +206,9 @@ async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
 async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_depth_is_dropped(
     depth: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Zenoh would drop what it has no room for, and tell nobody: a thread waits for it instead."""
+    """Zenoh would silently drop what it has no room for, so a thread waits for room instead."""
     in_thread: list[str] = []
-    all_published = threading.Event()  # else the thread might keep pace
+    all_published = threading.Event()  # # otherwise the thread might keep up
     submit = Worker.submit
 
     def hold(self: Worker, job: Callable[[], None]) -> None:
@@ -220,7 +220,8 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
         submit(self, run)
 
     monkeypatch.setattr(Worker, "submit", hold)
-    monkeypatch.setattr(session_state, "BURST_BYTES", 4096)  # else the machine would decide
+    # # otherwise the result would depend on the machine
+    monkeypatch.setattr(session_state, "BURST_BYTES", 4096)
     monkeypatch.setattr(session_state, "BURST_NS", 1 << 62)
     async with without_acknowledgements(monkeypatch) as (a, b):
         publisher = a.create_publisher(String, "n", depth)
@@ -245,7 +246,7 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
     ids=["best effort", "reliable"],
 )
 async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
-    """Not once for each message; a best effort one not at all."""
+    """Not once per message; a best-effort stream is not acknowledged at all."""
     async with two_nodes() as (a, b):
         with raw_session() as session:
             overheard = Overheard(session, "n")
@@ -261,7 +262,7 @@ async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
 
 
 async def test_malformed_acknowledgements_are_ignored() -> None:
-    """Any process may put any data on a key."""
+    """Any process may publish anything under a key."""
     async with two_nodes() as (a, b):
         with raw_session() as session:
             overheard = Overheard(session, "n")
@@ -281,7 +282,7 @@ async def test_malformed_acknowledgements_are_ignored() -> None:
                         rest = acknack.pack_ranges([(-big, big), (5, 3)])
                         for gid in (bytes(16), answer.reader):
                             session.put(key, acknack.pack(kind, gid, gid, *numbers, rest))
-                        if kind is not SubmessageKind.DATA:  # that is a message
+                        if kind is not SubmessageKind.DATA:  # # which is a message
                             gids = answer.writer, answer.reader
                             session.put(key, acknack.pack(kind, *gids, *numbers, rest))
             for number in range(2, 50):
@@ -290,7 +291,7 @@ async def test_malformed_acknowledgements_are_ignored() -> None:
 
 
 async def test_a_submessage_counts_only_on_the_key_of_its_topic() -> None:
-    """Whoever may publish on one topic would else speak for all of them."""
+    """Otherwise anyone allowed to publish on one topic could speak for all of them."""
     async with two_nodes() as (a, b):
         with raw_session() as session:
             overheard, others = Overheard(session, "n"), Overheard(session, "m")
@@ -318,7 +319,7 @@ async def test_a_submessage_counts_only_on_the_key_of_its_topic() -> None:
 async def test_a_reader_that_never_acknowledges_is_left_to_zenoh_until_it_does(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, writers: Writers
 ) -> None:
-    """A lie must not hold up a KEEP_ALL publisher; a reader that only began slowly loses little."""
+    """A false claim must not block a KEEP_ALL publisher; a reader slow to start loses little."""
     monkeypatch.setattr(stateful_writer, "MUTE_TICKS", 2)
     heard: list[Submessage] = []
     receive = StatefulReader.receive
@@ -346,7 +347,7 @@ async def test_a_reader_that_never_acknowledges_is_left_to_zenoh_until_it_does(
 
 
 async def test_a_context_of_another_version_counts_as_one_that_does_not_acknowledge() -> None:
-    """Its acknowledgements go by other keys; it hears everything as a ROS 2 node does."""
+    """Its acknowledgements use other keys; it receives everything, like a ROS 2 node."""
     async with quiet_node("a") as a:
         known = state_of(a.context).acknowledgements
         with raw_session() as session:
@@ -366,7 +367,7 @@ async def test_a_context_of_another_version_counts_as_one_that_does_not_acknowle
 async def test_an_idle_keep_all_publisher_hears_of_its_readers(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Else it could not tell one that was frozen from one that has ended."""
+    """Otherwise it could not tell a frozen reader from one that has ended."""
     monkeypatch.setattr(acknowledgements, "PROBE_S", 0.01)
     monkeypatch.setattr(stateful_writer, "UNHEARD_NS", 0)
     answers: list[Submessage] = []
@@ -385,7 +386,7 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
 
 
 class Clock:
-    """The time of publishers, which a test may let jump."""
+    """The publishers' clock, which a test may advance."""
 
     def __init__(self) -> None:
         self.jumped_ns = 0
@@ -397,7 +398,7 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """The time of publishers; processes that lost each other are connected again soon."""
+    """The publishers' clock; disconnected processes reconnect soon."""
     clock = Clock()
     monkeypatch.setattr(publishers, "perf_ns", clock)
     monkeypatch.setattr(forgotten_peers, "FIRST_S", 0.1)
@@ -406,14 +407,14 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 def cut(node: Node, other: Node) -> None:
-    """Cut the connections between two contexts, as a network does."""
+    """Cut the connections between two contexts, as a network failure does."""
     session = state_of(node.context).session
     assert session is not None
     _sockets.cut(set(_sockets.connections(session, {other.context.participant})))
 
 
 async def cut_off(node: Node, other: Node, is_lost: Callable[[], bool]) -> None:
-    """Cut the connections between two contexts until that is noticed."""
+    """Cut the connections between two contexts until both have noticed."""
     while not is_lost():
         cut(node, other)
         await asyncio.sleep(0.01)  # noqa: TID251  # there is no event
@@ -423,7 +424,7 @@ async def cut_off(node: Node, other: Node, is_lost: Callable[[], bool]) -> None:
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return(
     qos: QoSProfile, writers: Writers, clock: Clock
 ) -> None:
-    """Its lease has ended, and Zenoh sees no subscriber: the publisher still writes for it."""
+    """Its lease has expired and Zenoh sees no subscriber, but the publisher still writes for it."""
     async with two_nodes() as (a, b):
         publisher = a.create_publisher(Int32, "n", qos)
         subscription = b.create_subscription(Int32, "n", None, qos)
@@ -433,7 +434,7 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         await until(writers["/n"].is_done)
 
         publisher.publish(Int32(data=1))
-        clock.jumped_ns = 10_000_000_000  # it has not answered for so long
+        clock.jumped_ns = 10_000_000_000  # # it has not answered for that long
         await cut_off(a, b, lambda: publisher.get_subscription_count() == 0)
         for number in (2, 3):
             publisher.publish(Int32(data=number))
@@ -458,7 +459,7 @@ async def test_a_reader_whose_connection_breaks_for_a_moment_gets_each_message_o
     clock: Clock,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Its publisher keeps them for it; where the publisher forgets it, Zenoh's history has them."""
+    """Its publisher keeps them; if the publisher forgets the reader, Zenoh's history has them."""
     vanished = asyncio.Event()
     remove = StatefulWriter.remove
 

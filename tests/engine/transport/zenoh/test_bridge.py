@@ -1,4 +1,4 @@
-"""Nodes on DDS, through a stand-in for `zenoh-bridge-ros2dds`."""
+"""Nodes on DDS, reached through a stand-in for `zenoh-bridge-ros2dds`."""
 
 from __future__ import annotations
 
@@ -35,26 +35,26 @@ SUM_OF_2_AND_3 = HEADER + struct.pack("<qq", 2, 3)
 
 @pytest.fixture
 async def node() -> AsyncIterator[Node]:
-    """A node that has only what a test gives it."""
+    """A node with only what a test creates on it."""
     async with quiet_node("ours") as running:
         yield running
 
 
 @pytest.fixture
 def bridge(node: Node) -> Iterator[StandIn]:
-    """A bridge that finds the node; at the end it must have survived all that it was told."""
+    """A bridge that has found the node; at the end it must have survived everything sent to it."""
     with stand_in() as found:
         yield found
         assert found.deaths == []
 
 
 async def texts(subscription: Any, count: int) -> list[str]:
-    """Return what the next messages say."""
+    """Return the texts of the next messages."""
     return [(await subscription.receive()).data for _ in range(count)]
 
 
 async def publish_until_heard(publish: Callable[[bytes], None], subscription: Any) -> None:
-    """Publish until the routes are there, and forget what came until then."""
+    """Publish until the routes are up, and discard what arrived until then."""
     async with asyncio.TaskGroup() as tasks:
         first = tasks.create_task(subscription.receive())
         while not first.done():
@@ -69,7 +69,7 @@ async def publish_until_heard(publish: Callable[[bytes], None], subscription: An
 
 
 async def test_messages_of_a_dds_node_arrive_in_order_and_once(node: Node, bridge: StandIn) -> None:
-    """The plainest promise, in this direction."""
+    """The basic guarantee, in this direction."""
     subscription = node.create_subscription(String, "/chatter", None, 100)
     publish = bridge.publisher("/chatter")
     await publish_until_heard(publish, subscription)
@@ -80,7 +80,7 @@ async def test_messages_of_a_dds_node_arrive_in_order_and_once(node: Node, bridg
 
 
 async def test_a_dds_node_gets_our_messages_in_order_and_once(node: Node, bridge: StandIn) -> None:
-    """The plainest promise, in the other direction."""
+    """The basic guarantee, in the other direction."""
     received = bridge.subscribe("/chatter")
     publisher = node.create_publisher(String, "/chatter", 100)
     await publisher.wait_for_subscribers()
@@ -94,7 +94,7 @@ async def test_a_dds_node_gets_our_messages_in_order_and_once(node: Node, bridge
 async def test_nothing_is_published_on_a_bridges_key_without_a_dds_subscription(
     node: Node, bridge: StandIn
 ) -> None:
-    """A bridge costs only the topics that are used behind it."""
+    """Only topics used behind a bridge cost anything."""
     publisher = node.create_publisher(String, "/chatter", 10)
     await until(lambda: any("§chatter" in one or "/chatter/" in one for one in bridge.announced))
 
@@ -102,7 +102,7 @@ async def test_nothing_is_published_on_a_bridges_key_without_a_dds_subscription(
 
 
 async def test_what_was_published_before_a_bridge_came_reaches_late_dds_nodes() -> None:
-    """Transient local is a promise for later, and a bridge may be started last."""
+    """Transient local messages are for late joiners, and the bridge may be started last."""
     async with quiet_node("ours") as node:
         publisher = node.create_publisher(String, "/latched", kept(3))
         for number in range(5):
@@ -118,7 +118,7 @@ async def test_what_was_published_before_a_bridge_came_reaches_late_dds_nodes() 
 async def test_a_late_subscription_gets_what_a_dds_node_has_kept(
     node: Node, bridge: StandIn
 ) -> None:
-    """As /tf_static and /robot_description are used."""
+    """/tf_static and /robot_description depend on it."""
     publish = bridge.publisher("/latched", qos=LATCHED)
     for number in range(5):
         publish(string(str(number)))
@@ -128,7 +128,7 @@ async def test_a_late_subscription_gets_what_a_dds_node_has_kept(
 
 
 async def test_a_keep_all_subscription_hears_a_dds_node(node: Node, bridge: StandIn) -> None:
-    """It takes another way to its queue."""
+    """Its messages reach the queue in another way."""
     subscription = node.create_subscription(String, "/chatter", None, KEEP_ALL)
     publish = bridge.publisher("/chatter")
     await publish_until_heard(publish, subscription)
@@ -138,7 +138,7 @@ async def test_a_keep_all_subscription_hears_a_dds_node(node: Node, bridge: Stan
 
 
 async def test_a_second_subscription_can_end_without_the_first(node: Node, bridge: StandIn) -> None:
-    """A bridge ends the route with one token of a key, even if there are other subscriptions."""
+    """A bridge ends the route with one token of a key, even if other subscriptions remain."""
     first = node.create_subscription(String, "/chatter", None, 10)
     second = node.create_subscription(String, "/chatter", None, 5)
     publish = bridge.publisher("/chatter")
@@ -179,7 +179,7 @@ async def test_each_message_is_heard_once_with_a_bridge_and_peers(bridge: StandI
 
 
 async def numbers_and_dds(subscription: Any) -> list[str]:
-    """Return what comes after the greetings, until there are 21 and for a moment longer."""
+    """Return the messages after the greetings, until there are 21 and for a moment longer."""
     found: list[str] = []
     with suppress(TimeoutError):
         while True:
@@ -194,7 +194,7 @@ async def numbers_and_dds(subscription: Any) -> list[str]:
 
 
 async def test_a_dds_server_answers(node: Node, bridge: StandIn) -> None:
-    """With a request that has a header, and no attachment that it would have to know."""
+    """With a request that has a header, and no attachment that DDS would have to know."""
     bridge.serve("/add_two_ints", ADD, add)
     client = node.create_client(AddTwoInts, "/add_two_ints")
     assert await client.wait_for_service(timeout_sec=5)
@@ -204,7 +204,7 @@ async def test_a_dds_server_answers(node: Node, bridge: StandIn) -> None:
 
 
 async def test_a_dds_client_gets_one_answer(node: Node, bridge: StandIn) -> None:
-    """Requests of a bridge have an attachment of its own, and the last answer counts there."""
+    """A bridge's requests have their own attachment, and there the last answer counts."""
     node.create_service(
         AddTwoInts, "/add_two_ints", lambda q, a: AddTwoInts.Response(sum=q.a + q.b)
     )
@@ -215,7 +215,7 @@ async def test_a_dds_client_gets_one_answer(node: Node, bridge: StandIn) -> None
 
 
 async def test_a_handler_that_fails_sends_a_dds_client_nothing(node: Node, bridge: StandIn) -> None:
-    """DDS has no errors, and an answer that is none would be taken for one."""
+    """DDS has no error replies, and an error would be taken for an answer."""
 
     def fail(_: AddTwoInts.Request) -> AddTwoInts.Response:
         raise ValueError("no")
@@ -227,7 +227,7 @@ async def test_a_handler_that_fails_sends_a_dds_client_nothing(node: Node, bridg
 
 
 async def test_a_request_is_served_once_with_a_bridge_and_peers(bridge: StandIn) -> None:
-    """A client that asks DDS as well reaches the queryable that peers have for DDS clients."""
+    """A client that also asks DDS reaches the queryable that peers have for DDS clients."""
     served: list[int] = []
 
     def count(request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -253,7 +253,7 @@ async def test_a_request_is_served_once_with_a_bridge_and_peers(bridge: StandIn)
 async def test_a_call_that_fast_dds_leaves_unanswered_names_the_way_out(
     node: Node, bridge: StandIn, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The service is listed and matched, so a time-out alone would send users astray."""
+    """The service is listed and matched, so a mere time-out would mislead users."""
     bridge.publisher("/chatter", qos=FAST)
     bridge.serve("/add_two_ints", ADD, lambda _: None)
     client = node.create_client(AddTwoInts, "/add_two_ints")
@@ -274,7 +274,7 @@ async def test_a_call_that_fast_dds_leaves_unanswered_names_the_way_out(
 async def test_an_action_server_on_fast_dds_is_warned_of(
     node: Node, bridge: StandIn, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Its goals are requests, and would wait for ever."""
+    """Its goals are requests, and would wait forever."""
     bridge.publisher("/chatter", qos=FAST)
     token = bridge.announce("AS", "/fib", FIB)
     client = node.create_action_client(Fibonacci, "/fib")
@@ -289,7 +289,7 @@ async def test_an_action_server_on_fast_dds_is_warned_of(
 async def test_a_client_on_cyclone_has_no_caveat(
     node: Node, bridge: StandIn, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The warning is for robots that need it."""
+    """The warning is only for robots that need it."""
     bridge.publisher("/chatter")
     bridge.serve("/add_two_ints", ADD, add)
     client = node.create_client(AddTwoInts, "/add_two_ints")
@@ -303,7 +303,7 @@ async def test_a_client_on_cyclone_has_no_caveat(
 
 
 async def test_a_goal_goes_to_a_dds_server(node: Node, bridge: StandIn) -> None:
-    """The five parts of an action have one token, and each its own key."""
+    """The five parts of an action share one token, but each has its own key."""
     status = bridge.publisher("/fib/_action/status", GOAL_STATUS, LATCHED)
     feedback = bridge.publisher("/fib/_action/feedback", f"{FIB}_FeedbackMessage")
     goals: list[bytes] = []
@@ -334,7 +334,7 @@ async def test_a_goal_goes_to_a_dds_server(node: Node, bridge: StandIn) -> None:
 
 
 async def test_a_dds_client_has_a_goal_executed(node: Node, bridge: StandIn) -> None:
-    """As with `ros2 action send_goal` on the robot."""
+    """As `ros2 action send_goal` on the robot does."""
 
     async def execute(goal: Any) -> Any:
         goal.succeed()
@@ -354,7 +354,7 @@ async def test_a_dds_client_has_a_goal_executed(node: Node, bridge: StandIn) -> 
 
 
 async def test_parameters_of_a_dds_node_are_read(node: Node, bridge: StandIn) -> None:
-    """Its six services are like all others."""
+    """Its six services work like any others."""
     for name in (
         "get_parameter_types",
         "set_parameters",
@@ -374,7 +374,7 @@ async def test_parameters_of_a_dds_node_are_read(node: Node, bridge: StandIn) ->
 
 
 async def test_a_dds_node_reads_our_parameters(bridge: StandIn) -> None:
-    """Our node is not listed on DDS, but its services are."""
+    """DDS does not list our node, but does list its services."""
     async with Node("tuned", context=Context(), enable_rosout=False) as tuned:
         tuned.declare_parameter("count", 7)
         await until(lambda: any("/SS/tuned§get_parameters/" in one for one in bridge.announced))
@@ -388,7 +388,7 @@ async def test_a_dds_node_reads_our_parameters(bridge: StandIn) -> None:
 
 
 async def test_a_topic_has_the_type_and_qos_of_its_token(node: Node, bridge: StandIn) -> None:
-    """What `aionode topic info` shows comes from there."""
+    """`aionode topic info` shows these."""
     bridge.publisher("/chatter", qos=":0:1:0,7")
     await node.graph.until(lambda: node.graph.count(EndpointKind.PUBLISHER, "/chatter") > 0)
     (found,) = node.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")
@@ -402,7 +402,7 @@ async def test_a_topic_has_the_type_and_qos_of_its_token(node: Node, bridge: Sta
 
 
 async def test_tools_see_which_node_has_a_topic(node: Node, bridge: StandIn) -> None:
-    """Tokens do not tell, but the bridge does when it is asked."""
+    """Tokens do not say, but the bridge does when asked."""
     bridge.nodes["0110" + "0" * 28 + "/robot/talker"] = {
         "publishers": [{"name": "/chatter", "type": "std_msgs/msg/String"}]
     }
@@ -416,7 +416,7 @@ async def test_tools_see_which_node_has_a_topic(node: Node, bridge: StandIn) -> 
 
 
 async def test_parameter_services_tell_their_node(node: Node, bridge: StandIn) -> None:
-    """So most nodes are known without a question."""
+    """Most nodes are therefore known without asking the bridge."""
     bridge.serve("/talker/get_parameters", "rcl_interfaces/srv/GetParameters", lambda _: None)
     await node.graph.until(lambda: bool(node.graph.nodes_named("/talker")))
     bridge.end("server /talker/get_parameters")
@@ -424,7 +424,7 @@ async def test_parameter_services_tell_their_node(node: Node, bridge: StandIn) -
 
 
 async def test_the_tokens_of_other_peers_are_no_bridge(node: Node) -> None:
-    """A peer of a bridge announces as we do; only a bridge has a token of its own."""
+    """A peer of a bridge announces itself as we do; only a bridge has a bridge token."""
     with stand_in() as one:
         one.token.undeclare()
         await asyncio.to_thread(one.publisher, "/chatter")
@@ -461,7 +461,7 @@ async def test_publishers_ask_nothing_for_bridges_until_there_is_one(node: Node)
 
 
 async def test_what_was_destroyed_before_a_bridge_came_is_not_announced(node: Node) -> None:
-    """It would be an endpoint on DDS that nothing serves."""
+    """It would become an endpoint on DDS that nobody serves."""
     for one in (
         node.create_publisher(String, "/gone", 10),
         node.create_subscription(String, "/gone", None, 10),
@@ -480,7 +480,7 @@ async def test_what_was_destroyed_before_a_bridge_came_is_not_announced(node: No
 
 
 async def test_a_bridge_with_a_namespace_carries_what_is_below_it(node: Node) -> None:
-    """What is announced elsewhere would be listed on DDS, but its messages routed nowhere."""
+    """Anything announced outside it would be listed on DDS, but its messages would go nowhere."""
     with stand_in("/bot1") as bridge:
         publish = bridge.publisher("/chatter")
         subscription = node.create_subscription(String, "/bot1/chatter", None, 100)
@@ -516,7 +516,7 @@ async def test_a_bridge_that_has_just_started_is_asked_again_for_its_namespace(n
 
 
 async def test_two_robots_with_namespaces_are_told_apart(node: Node) -> None:
-    """One bridge for each, and one network."""
+    """With one bridge for each, on one network."""
     with stand_in("/bot1") as one, stand_in("/bot2", first=False) as two:
         first = node.create_subscription(String, "/bot1/chatter", None, 100)
         second = node.create_subscription(String, "/bot2/chatter", None, 100)
@@ -534,7 +534,7 @@ async def test_two_robots_with_namespaces_are_told_apart(node: Node) -> None:
 async def test_no_bridge_gets_a_name_that_one_of_another_namespace_takes_for_its_own(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A bridge compares names with its namespace without the slash, and does not survive that."""
+    """A bridge compares names with its namespace without the slash, and crashes on a match."""
     with stand_in() as root, stand_in("/bot1", first=False) as one:
         await node.graph.until(lambda: sum(found.bridged for found in node.graph.nodes()) == 2)
         with caplog.at_level(logging.WARNING):
@@ -548,7 +548,7 @@ async def test_no_bridge_gets_a_name_that_one_of_another_namespace_takes_for_its
 
 
 async def test_what_a_new_bridge_takes_for_its_own_is_withdrawn(node: Node) -> None:
-    """It may have ended of it by then, but starts again."""
+    """The bridge may have crashed because of it by then, but it starts again."""
     with stand_in() as root:
         node.create_publisher(String, "/bot10/chatter", 10)
         await until(lambda: any("/MP/bot10§chatter/" in found for found in list(root.announced)))
@@ -561,7 +561,7 @@ async def test_what_a_new_bridge_takes_for_its_own_is_withdrawn(node: Node) -> N
 
 
 async def test_a_bridge_that_comes_back_finds_everything_announced(node: Node) -> None:
-    """Restarting the bridge is the cure for most of its troubles."""
+    """Restarting the bridge cures most of its problems."""
     subscription = node.create_subscription(String, "/chatter", None, 100)
     with stand_in() as first:
         await publish_until_heard(first.publisher("/chatter"), subscription)
@@ -574,7 +574,7 @@ async def test_a_bridge_that_comes_back_finds_everything_announced(node: Node) -
 
 
 async def test_everything_is_withdrawn_when_the_context_closes(bridge: StandIn) -> None:
-    """What would stay is an endpoint on DDS that nothing serves."""
+    """Anything left would be an endpoint on DDS that nobody serves."""
     async with Context() as context, quiet_node("brief", context) as node:
         node.create_subscription(String, "/brief", None, 10)
         node.create_service(AddTwoInts, "/brief_add", lambda _: AddTwoInts.Response())
