@@ -99,7 +99,13 @@ class Routes:
         """Cancel all blocks."""
         self._is_ending = True
         for scope in self._scopes:
-            scope.reschedule(0.0)
+            cancel(scope)
+
+
+def cancel(scope: asyncio.Timeout) -> None:
+    """Cancel a block in the loop's next iteration, unless it is already being cancelled."""
+    if not scope.expired():
+        scope.reschedule(0.0)
 
 
 routes = Routes()
@@ -262,7 +268,7 @@ async def watching(
 
     async def watch() -> None:
         await sign()
-        scope.reschedule(0.0)  # in the past: takes effect in the loop's next iteration
+        cancel(scope)
 
     error: BaseException | None = None
     async with asyncio.TaskGroup() as tasks:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
 from typing import Any
 
@@ -17,7 +18,7 @@ from starlette.middleware.base import BaseHTTPMiddleware
 
 from aionode._process.concurrency import checkpoint
 from aionode.engine.context import Context
-from aionode.fastapi import until_disconnected
+from aionode.fastapi import stopping_at_signals, until_disconnected
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.node import Node
@@ -113,6 +114,46 @@ async def test_the_block_is_cancelled_when_the_browser_leaves(
 
     assert await left(Browser(app, "/")) == 499
     assert ends == ["cancelled"]
+
+
+async def test_a_signal_ends_all_routes_while_one_cleans_up_after_its_browser(
+    app: FastAPI,
+) -> None:
+    """A block that is being cancelled cannot be cancelled again, and kept the others open."""
+    cleaned_up = asyncio.Event()
+
+    @app.get("/left")
+    async def clean_up(request: Request) -> None:
+        async with until_disconnected(request):
+            try:
+                await asyncio.Event().wait()
+            finally:
+                await cleaned_up.wait()
+
+    @app.get("/open")
+    async def wait(request: Request) -> None:
+        async with until_disconnected(request):
+            await asyncio.Event().wait()
+
+    before = signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the server's own
+    try:
+        async with (
+            Node("web", context=Context(transport="local")) as node,
+            stopping_at_signals(node),
+            asyncio.TaskGroup() as tasks,
+        ):
+            left_browser = Browser(app, "/left")
+            leaving = tasks.create_task(left_browser.run())
+            waiting = tasks.create_task(Browser(app, "/open").run())
+            await settle()
+            left_browser.leave()
+            await settle()
+            signal.raise_signal(signal.SIGTERM)
+            assert await waiting == 503
+            cleaned_up.set()
+            assert await leaving == 503
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 async def test_what_the_route_does_after_the_block_is_not_cancelled(app: FastAPI) -> None:
