@@ -358,6 +358,19 @@ async def test_a_slow_client_keeps_its_newest_messages(bench: Bench) -> None:
         assert slow.dropped() == {"/words": 3}
 
 
+async def test_little_is_kept_for_those_who_come_late(bench: Bench) -> None:
+    """A message in Python takes far more than its text, and a client sends as it likes."""
+    heard: list[str] = []
+    async with bench.session() as session:
+        for number in range(30):
+            await session.publish("/words", {"data": str(number)}, "std_msgs/String")
+        late = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        bench.node.create_subscription(String, "/words", lambda msg: heard.append(msg.data), late)
+        await settle()
+
+    assert heard == [str(number) for number in range(20, 30)]
+
+
 async def test_a_client_that_comes_late_gets_what_is_kept_for_it(bench: Bench) -> None:
     """A map, a robot description: even if another client has subscribed before."""
     maps = bench.node.create_publisher(String, "/map", LATCHED)

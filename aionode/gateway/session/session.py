@@ -56,7 +56,7 @@ SERVER_SEC: Final = 1.0
 """How long a call or goal waits for its server, in seconds."""
 
 PUBLISHED: Final = QoSProfile(
-    depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1)
+    depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1)
 )
 """For publishers of clients, which publish at once: a subscription within a second still gets
 it."""
