@@ -42,6 +42,9 @@ TOLD_BY |= {"failed", "_warn", "_note_refusal"}
 """The functions that count and log them, each through `Refusals.note`."""
 
 UNTOLD = {
+    "_stopping.py:here": "its time has passed: the answer has what still moves",
+    "_stopping.py:_ask": "the answer names the gateway that does not answer",
+    "_stopping.py:cancelled": "the answer says that the goal has not ended",
     "foxglove/parameters.py:of": "kept for `tell`, which raises it",
     "http/offers.py:find": "a type that nobody describes is left out of a document",
     "http/offers.py:classes_of": "the same, after its time",
@@ -58,8 +61,6 @@ UNTOLD = {
     "mcp/confirming.py:_elicited": "no answer is a no, which is refused and said as one",
     "mcp/events.py:reached": "its client is gone, or hears of the next event",
     "mcp/moving.py:listening": "its time has passed: the answer has the number",
-    "mcp/moving.py:cancelled": "the answer says that the goal has not ended",
-    "mcp/moving.py:stop": "its time has passed: the answer has what still moves",
     "mcp/reading.py:describe": "a node without parameters",
     "mcp/reading.py:read": "its time has passed: the answer has what came",
     "mcp/reading.py:watch": "the same",
