@@ -19,12 +19,12 @@ from msgspec import Struct, structs
 from aionode import names, qos
 from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
 from aionode.errors import EntityDestroyedError
+from aionode.qos import QoSProfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from collections.abc import Set as AbstractSet
 
-    from aionode.qos import QoSProfile
 
 __all__ = [
     "SERVICE_KINDS",
