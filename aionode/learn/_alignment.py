@@ -26,6 +26,9 @@ LONGEST_GAP: Final = 1.5
 LONGEST_SEC: Final = 2000.0
 """The longest episode in seconds: readers compare times, which are 32-bit floats, to 0.1 ms."""
 
+ROUNDING_NS: Final = 1000
+"""How much later a message may be and still count: periods are no whole nanoseconds."""
+
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
@@ -155,9 +158,9 @@ def sampled(
     if not count:
         nothing = np.zeros((len(times), series.values.shape[1]))
         return np.zeros(len(times), np.int64), np.full(len(times), np.inf), nothing
-    places = np.searchsorted(series.times, times, side="right") - 1
+    places = np.searchsorted(series.times, times + ROUNDING_NS, side="right") - 1
     chosen = np.maximum(places, 0)
-    ages = np.where(places < 0, np.inf, (times - series.times[chosen]) / 1e9)
+    ages = np.where(places < 0, np.inf, np.maximum(times - series.times[chosen], 0) / 1e9)
     values = series.values[chosen]
     if is_interpolated and values.shape[1]:
         following = np.minimum(chosen + 1, count - 1)

@@ -265,11 +265,29 @@ def test_an_export_is_checked(tmp_path: Path) -> None:
 # Alignment
 
 
+ROUNDING_SEC = 1e-6
+"""A message that is later by less counts as of the same time."""
+
+
 def series(times_sec: Any, values: Any = None) -> Series:
     """Return messages at times."""
     times = np.unique(np.round(np.asarray(times_sec) * 1e9).astype(np.int64))
     columns = np.zeros((len(times), 0)) if values is None else values(times / 1e9)
     return Series(times, times, columns, np.arange(len(times)))
+
+
+def test_a_command_of_every_period_is_taken_once() -> None:
+    """A simulation commands exactly once a picture, at times rounded to nanoseconds."""
+    times = np.arange(100) / 30
+    rows = aligned(
+        contract(),
+        [
+            series(times),
+            series(times, lambda each: np.stack([each, each], axis=1)),
+            series(times, lambda each: np.round(each * 30)[:, None]),
+        ],
+    )
+    assert np.diff(rows.values[2][:98, 0]).tolist() == [1.0] * 97
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
@@ -310,7 +328,7 @@ def test_a_picture_and_its_joint_agree_within_the_age_that_is_told(
     )
     for time, age, value in zip(rows.times, rows.ages[1], rows.values[1], strict=True):
         assert 0 <= age <= 0.2 + 1e-6
-        assert abs(value[0] - angle(time / 1e9)) <= SPEED * age + 1e-9
+        assert abs(value[0] - angle(time / 1e9)) <= SPEED * (age + ROUNDING_SEC)
     steps = np.diff(rows.times) / 1e9
     inside = np.delete(steps, [start - 1 for start in rows.starts if start])
     assert inside.max(initial=0) <= 1.5 / 30 + 1e-9
