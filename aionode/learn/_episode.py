@@ -20,7 +20,7 @@ from aionode.errors import DatasetError
 from aionode.learn._alignment import Aligned, Series, aligned
 from aionode.learn._metadata import CONTRACT_KEY, TASK_KEY
 from aionode.learn._report import counted, report_of
-from aionode.learn._scan import UNREADABLE, records_of, scanned
+from aionode.learn._scan import UNREADABLE, full_name, records_of, scanned
 from aionode.learn._video import PixelStats, VideoWriter
 from aionode.learn.contract import Contract, Observation
 
@@ -227,7 +227,7 @@ def fill(
         encoding = [(each, threads.submit(each.encode)) for each in wanted]
         by_topic: dict[str, list[tuple[Camera, Future[None]]]] = {}
         for each, future in encoding:
-            by_topic.setdefault(each.entry.topic, []).append((each, future))
+            by_topic.setdefault(full_name(each.entry.topic), []).append((each, future))
         try:
             for record in records_of(opened, set(by_topic), problems):
                 tell(1)

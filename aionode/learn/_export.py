@@ -20,6 +20,7 @@ from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
 from aionode.learn._episode import PART, Job, contract_in, run
 from aionode.learn._metadata import FAILURE, OUTCOME_KEY
 from aionode.learn._report import Limits, counted, over, text_of
+from aionode.learn._scan import full_name
 from aionode.learn.contract import Contract
 
 if TYPE_CHECKING:
@@ -275,12 +276,13 @@ def read_part(job: Job) -> dict[str, Any] | None:
 def messages_of(job: Job) -> int:
     """Return how many messages of a bag are to be read: pictures twice."""
     contract = Contract.from_dict(job.contract)
-    pictures = {each.topic for each in contract.observations if each.image}
+    pictures = {full_name(each.topic) for each in contract.observations if each.image}
+    topics = {full_name(name) for name in contract.topics}
     with bag.open(job.path) as opened:
         return sum(
             count * (2 if name in pictures else 1)
             for name, count in opened.counts.items()
-            if name in contract.topics
+            if name in topics
         )
 
 

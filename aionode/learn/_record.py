@@ -141,7 +141,7 @@ class Episodes:
         self.current: Episode | None = None
         self.node = Node(node_name, context=context)
         self._context = context
-        self._topics = [*contract.topics, *topics]
+        self._topics = [self.node.resolve_topic_name(name) for name in (*contract.topics, *topics)]
         self._recorder: Recorder | None = None
         self._turn = asyncio.Lock()
         for name, act in (

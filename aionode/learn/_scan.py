@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from aionode.bag import Bag, Record
     from aionode.learn.contract import Action, Contract, Observation
 
-__all__ = ["UNREADABLE", "Collected", "records_of", "scanned"]
+__all__ = ["UNREADABLE", "Collected", "full_name", "records_of", "scanned"]
 
 UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
 """What a message that does not fit the contract raises."""
@@ -93,17 +93,22 @@ def scanned(
     collected = [Collected(entry) for entry in contract.entries]
     by_topic: dict[str, list[Collected]] = {}
     for each in collected:
-        by_topic.setdefault(each.entry.topic, []).append(each)
+        by_topic.setdefault(full_name(each.entry.topic), []).append(each)
     problems = [
-        f"{name} is {opened.topics[name].type} in the bag, and {typename} in the contract"
-        for name, typename in contract.topics.items()
-        if name in opened.topics and opened.topics[name].type != typename
+        f"{name} is {opened.topics[name].type} in the bag, and {each[0].entry.type} in the contract"
+        for name, each in by_topic.items()
+        if name in opened.topics and opened.topics[name].type != each[0].entry.type
     ]
     for record in records_of(opened, by_topic.keys() & opened.topics.keys(), problems):
         tell(1)
         for each in by_topic[record.topic]:
             each.take(record)
     return [each.series() for each in collected], problems
+
+
+def full_name(topic: str) -> str:
+    """Return a topic of a contract as bags name it: those of a robot without a namespace."""
+    return f"/{topic.removeprefix('/')}"
 
 
 def records_of(opened: Bag, topics: set[str], problems: list[str]) -> Iterator[Record]:

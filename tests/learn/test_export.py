@@ -187,6 +187,15 @@ def test_depths_survive_to_a_hundredth(tmp_path: Path) -> None:
     assert read.stats["observation.images.depth"]["min"] == [[[pytest.approx(0.5, abs=0.01)]]]
 
 
+def test_a_topic_may_be_named_without_its_slash(tmp_path: Path) -> None:
+    """As nodes name them."""
+    observations = contract().to_dict()["observations"]
+    for each in observations:
+        each["topic"] = each["topic"].removeprefix("/")
+    bag = demonstration(tmp_path / "run", length_sec=0.5)
+    assert len(dataset(tmp_path, bag, contract=contract(observations=observations))) == 13
+
+
 def test_av1_is_an_option(tmp_path: Path) -> None:
     """LeRobot's own default: smaller files for more work."""
     read = dataset(tmp_path, demonstration(tmp_path / "run", length_sec=1), codec="av1")
