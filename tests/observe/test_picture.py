@@ -110,10 +110,10 @@ async def test_the_command_draws_measures_and_saves(
     assert await draw(robot, ["/words"], output=output, form="svg") == 0
     await draw(robot, output=output, since=saved)
     assert "+" not in capsys.readouterr().out.split("</svg>")[1]
-    with pytest.raises(CommandError, match="nothing is called"):
+    with pytest.raises(CommandError, match="nothing is named"):
         await draw(robot, ["/none"], output=output)
     saved.write_text("{}")
-    with pytest.raises(CommandError, match="no graph that --save wrote"):
+    with pytest.raises(CommandError, match="not a graph written by --save"):
         await draw(robot, output=output, since=saved)
 
 
