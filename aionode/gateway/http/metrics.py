@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from collections import Counter
+from typing import TYPE_CHECKING, Final, Literal
 
 import msgspec
 
-from aionode.endpoints.core.node_core import core_of
-from aionode.endpoints.stats import CallbackStats, ClientStats, Distribution, PublisherStats
-from aionode.names import is_hidden
+from aionode.endpoints.stats import Distribution
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from aionode.gateway._clients import GatewayStats
-    from aionode.node import Node
+    from aionode.observe import DurationReport, EntityReport, NodeReport
 
 __all__ = ["MEDIA_TYPE", "Family", "gateway_metrics", "node_metrics", "prometheus"]
 
@@ -23,18 +22,6 @@ MEDIA_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 QUANTILES: Final = (0.5, 0.9, 0.99)
 
 Labels = dict[str, str]
-
-Stats: TypeAlias = PublisherStats | CallbackStats | ClientStats
-
-KINDS: Final = {
-    "Publisher": "publisher",
-    "Subscription": "subscription",
-    "Service": "service",
-    "Client": "client",
-    "ActionServer": "action server",
-    "Timer": "timer",
-}
-"""The classes of entities with stats, and the name of each in the metrics."""
 
 
 class Family(msgspec.Struct):
@@ -133,21 +120,21 @@ COUNTERS: Final = {
     "lost": "Messages missing in the sequence numbers of publishers.",
     "errors": "Callbacks that raised, and calls that failed.",
 }
-"""The counts of entities, by the attributes of their stats."""
+"""The counts of entities, by their names in reports."""
 
 DURATIONS: Final = {
     "queue_wait": "Time from arrival to the start of the callback.",
     "run_time": "Time from the start of a callback to its end, and from a call to its response.",
     "blocking": "The longest stretch of a callback without an await.",
 }
-"""The durations measured by entities, by the attributes of their stats."""
+"""The durations measured by entities, by their names in reports."""
 
 
-def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> list[Family]:
+def node_metrics(nodes: Iterable[NodeReport], sees: Callable[[str, str], bool]) -> list[Family]:
     """Return the counts of the nodes' entities, limited to the names that the caller may see.
 
     Args:
-        nodes: The nodes.
+        nodes: The reports of the nodes, as `aionode.observe` has them.
         sees: Returns whether the caller sees a topic, service or action of this name and type.
     """
     running = Family("aionode_node_running", "gauge", "Whether the node runs its callbacks.")
@@ -158,55 +145,38 @@ def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> lis
         name: Family(f"aionode_{name}_seconds", "summary", text) for name, text in DURATIONS.items()
     }
     for node in nodes:
-        full_name = node.get_fully_qualified_name()
-        if not sees(full_name, ""):
+        if not sees(node.name, ""):
             continue
-        running.add(int(node.is_running), node=full_name)
-        for (kind, name), stats in entities_of(node, sees).items():
-            labels = {"node": full_name, "entity": kind, "name": name}
-            for attribute, family in counters.items():
-                if hasattr(stats[0], attribute):
-                    family.add(sum(getattr(stat, attribute) for stat in stats), **labels)
-            for attribute, family in durations.items():
-                if hasattr(stats[0], attribute):
-                    family.add_durations(merged(getattr(stat, attribute) for stat in stats), labels)
+        running.add(int(node.is_running), node=node.name)
+        for (kind, name), entities in merged(node.entities, sees).items():
+            labels = {"node": node.name, "entity": kind, "name": name}
+            for count in entities[0].counts:
+                counters[count].add(sum(each.counts[count] for each in entities), **labels)
+            for duration in entities[0].durations:
+                together = sum_of(each.durations[duration] for each in entities)
+                durations[duration].add_durations(together, labels)
     return [running, *counters.values(), *durations.values()]
 
 
-def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str, str], list[Stats]]:
-    """Return the stats of the entities that the caller sees, by kind and name.
+def merged(
+    entities: Iterable[EntityReport], sees: Callable[[str, str], bool]
+) -> dict[tuple[str, str], list[EntityReport]]:
+    """Return the entities that the caller sees, by kind and name.
 
     Entities of one kind and name are merged, since Prometheus refuses duplicate labels.
     """
-    entities: dict[tuple[str, str], list[Stats]] = {}
-    for entity in list(core_of(node).entities):
-        kind = kind_of(entity)
-        if kind is None:
-            continue
-        name, type_name = name_and_type(entity)
-        if not name or (not is_hidden(name) and sees(name, type_name)):
-            entities.setdefault((kind, name), []).append(entity.stats)  # type: ignore[attr-defined]  # of KINDS
-    return entities
+    groups: dict[tuple[str, str], list[EntityReport]] = {}
+    for entity in entities:
+        if not entity.name or sees(entity.name, entity.type_name):
+            groups.setdefault((entity.kind, entity.name), []).append(entity)
+    return groups
 
 
-def kind_of(entity: object) -> str | None:
-    """Return the name of an entity's kind; None if it has no stats."""
-    names = (cls.__name__ for cls in type(entity).__mro__)
-    return next((KINDS[name] for name in names if name in KINDS), None)
-
-
-def name_and_type(entity: Any) -> tuple[str, str]:
-    """Return the full name of an entity and of its type; a timer has neither."""
-    if hasattr(entity, "_endpoint"):
-        return entity._endpoint.name, entity._endpoint.type_name
-    if hasattr(entity, "action_type"):
-        return entity.action_name, entity.action_type.__ros_type__
-    return "", ""
-
-
-def merged(several: Iterable[Distribution]) -> Distribution:
-    """Merge the durations of several entities."""
-    together = Distribution()
+def sum_of(several: Iterable[DurationReport]) -> Distribution:
+    """Return the durations of several entities as one distribution."""
+    buckets: Counter[int] = Counter()
+    longest_ns = 0
     for durations in several:
-        together._merge(durations._read(), durations.max_ns)
-    return together
+        buckets.update(durations.buckets)
+        longest_ns = max(longest_ns, durations.max_ns)
+    return Distribution.of(buckets, longest_ns)

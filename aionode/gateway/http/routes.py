@@ -44,7 +44,6 @@ from aionode.gateway.http.topics import answer_topic
 from aionode.gateway.policy.identity import Identity
 from aionode.gateway.session.assets import read_asset
 from aionode.gateway.session.encoding.values import json_of
-from aionode.node import Node
 
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
@@ -233,7 +232,7 @@ class HttpApi:
 
     async def metrics(self, asked: Asked) -> Response:
         """Return the counts of nodes and of the gateway, for Prometheus."""
-        nodes = [node for node in self._clients.node.context._nodes if isinstance(node, Node)]
+        nodes = self._clients.node.context.report().nodes
 
         def sees(name: str, type_name: str) -> bool:
             return asked.session.graph.sees(name, type_name)
