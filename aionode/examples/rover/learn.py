@@ -71,35 +71,41 @@ def script(picture: npt.NDArray[np.uint8]) -> tuple[float, float]:
     return 0.4 * max(0.0, 1 - size / NEAR), 1.5 * middle
 
 
-async def demonstrate(node: Node, path: Path, seed: int) -> float:
-    """Record one episode in a bag, and return how many seconds it took."""
-    from aionode.bag import Recorder  # the others need no bags
-
+async def turn_away(node: Node, seed: int) -> None:
+    """Put the rover back, and turn it somewhere."""
     contract = Contract.load(CONTRACT)
     reset = node.create_client(Trigger, "/simulator/reset")
     await reset.wait_for_service()
     await reset.call(Trigger.Request())
     turn_sec = random.Random(seed).uniform(0.5, 5.5)  # noqa: S311  # no secret
-    async with contract.observe(node) as observations:
-        async with contract.act(node) as actor:
-            async for seconds, _ in timed(observations):
-                if seconds > turn_sec:
-                    break
-                actor.send([0.0, 1.0])
-        async with (
-            Recorder(
-                path,
-                topics=["/camera/image", "/cmd_vel"],
-                context=node.context,
-                use_sim_time=node.get_parameter("use_sim_time").value,
-            ),
-            contract.act(node) as actor,
-        ):
-            async for seconds, picture in timed(observations):
-                speed, turn = script(picture)
-                actor.send([speed, turn])
-                if seconds > LONGEST_SEC or (0 < speed < 0.02 and abs(turn) < 0.05):
-                    break
+    async with contract.observe(node) as observations, contract.act(node) as actor:
+        async for seconds, _ in timed(observations):
+            if seconds > turn_sec:
+                return
+            actor.send([0.0, 1.0])
+
+
+async def demonstrate(node: Node, path: Path, seed: int) -> float:
+    """Record one episode in a bag, and return how many seconds it took."""
+    from aionode.bag import Recorder  # the others need no bags
+
+    contract = Contract.load(CONTRACT)
+    await turn_away(node, seed)
+    async with (
+        contract.observe(node) as observations,
+        Recorder(
+            path,
+            topics=["/camera/image", "/cmd_vel"],
+            context=node.context,
+            use_sim_time=node.get_parameter("use_sim_time").value,
+        ),
+        contract.act(node) as actor,
+    ):
+        async for seconds, picture in timed(observations):
+            speed, turn = script(picture)
+            actor.send([speed, turn])
+            if seconds > LONGEST_SEC or (0 < speed < 0.02 and abs(turn) < 0.05):
+                break
     return seconds
 
 
@@ -170,6 +176,7 @@ async def main() -> None:
         return
     async with Node("learner") as node:
         if given.verb == "drive":
+            await turn_away(node, EPISODES)  # as no demonstration began
             print(f"arrived: {await drive(node, np.load(WEIGHTS))}")
             return
         shutil.copy(CONTRACT, CONTRACT.name)
