@@ -36,13 +36,13 @@ def to_chains(why: Why) -> str:
     """
     lines = [line for sent in why.sent for line in chain(sent)]
     notes = {
-        f"keeps no causes: {REMEDY}": why.not_kept,
-        "does not answer": why.silent,
-        "is of an older aionode, which keeps no causes": why.older,
-        "has answered what this version cannot read": why.unreadable,
+        f"no causes are kept: {REMEDY}": why.not_kept,
+        "no answer": why.silent,
+        "an older aionode, which keeps no causes": why.older,
+        "an answer that this version cannot read": why.unreadable,
     }
     lines += [
-        f"{', '.join(nodes) or 'a process'} {text}"
+        f"{', '.join(nodes) or 'a process'}: {text}"
         for text, those in notes.items()
         for nodes in those.values()
     ]

@@ -58,4 +58,4 @@ async def test_an_unknown_name_is_an_error_and_a_silent_topic_is_said(
         with pytest.raises(CommandError, match="no topic, service"):
             await explain(node, "nowhere", output=Output())
         assert await explain(node, "map", output=Output()) == 1
-    assert "/map: nothing was sent by this name" in capsys.readouterr().out
+    assert "/map: nothing is known to have been sent under this name" in capsys.readouterr().out

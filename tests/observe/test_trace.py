@@ -90,4 +90,7 @@ async def test_the_command_writes_a_file_and_names_who_takes_no_part(
 
     assert status == 1
     assert json.loads(path.read_bytes())["traceEvents"] == []
-    assert "/robot keeps no causes: start it with AIONODE_CAUSES=1" in capsys.readouterr().out
+    assert (
+        "/robot: callbacks are not recorded: start it with AIONODE_CAUSES=1"
+        in capsys.readouterr().out
+    )

@@ -468,7 +468,7 @@ async def test_who_keeps_no_causes_is_named_with_the_remedy() -> None:
     assert node.context.causes is None
     assert to_chains(found).splitlines() == [
         "/out (robot, keeps no causes)",
-        "/robot keeps no causes: start it with AIONODE_CAUSES=1, or with Context(causes=True)",
+        "/robot: no causes are kept: start it with AIONODE_CAUSES=1, or with Context(causes=True)",
     ]
 
 
@@ -494,8 +494,8 @@ async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:
     assert (found.silent, found.older) == ({"a1": ["/frozen"]}, {"b2": ["/older"]})
     assert found.unreadable == {"c3": ["/newer"], "e5": ["/lies"]}
     assert to_chains(found).splitlines()[1:] == [
-        "/frozen does not answer",
-        "/older is of an older aionode, which keeps no causes",
-        "/newer has answered what this version cannot read",
-        "/lies has answered what this version cannot read",
+        "/frozen: no answer",
+        "/older: an older aionode, which keeps no causes",
+        "/newer: an answer that this version cannot read",
+        "/lies: an answer that this version cannot read",
     ]

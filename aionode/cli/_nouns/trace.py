@@ -52,14 +52,14 @@ async def record(node: Node, path: Path, *, output: Output, duration: float = 10
         trace = await record_trace(node, duration)
     write(path, trace)
     notes = {
-        "keeps no causes: start it with AIONODE_CAUSES=1": trace.not_kept,
-        "does not answer": trace.silent,
-        "is of an older aionode, or a newer one that tells its callbacks otherwise": trace.older,
+        "callbacks are not recorded: start it with AIONODE_CAUSES=1": trace.not_kept,
+        "no answer": trace.silent,
+        "an older aionode, or a newer one that reports its callbacks differently": trace.older,
     }
     lines = [f"{path}: {trace.callbacks} callbacks"]
     lines += [f"{trace.lost} were lost: too many between two questions"] if trace.lost else []
     lines += [
-        f"{', '.join(nodes)} {text}"
+        f"{', '.join(nodes)}: {text}"
         for text, those in notes.items()
         for nodes in those.values()
         if nodes

@@ -57,11 +57,13 @@ async def explain(node: Node, name: str, *, output: Output, timeout: float = 0.5
         names |= {each.partition("/_action/")[0] for each in names}
         if full not in names:
             raise CommandError(
-                f"{name}: no topic, service, action, node or goal is called so; "
+                f"{name}: no topic, service, action, node or goal has this name; "
                 "`aionode graph` shows what there is"
             )
         told = to_chains(found)
-        told = f"{full}: nothing was sent by this name" + (f"\n{told}" if told else "")
+        told = f"{full}: nothing is known to have been sent under this name" + (
+            f"\n{told}" if told else ""
+        )
         output.item(told, msgspec.to_builtins(found))
         return 1
     output.item(to_chains(found), msgspec.to_builtins(found))
