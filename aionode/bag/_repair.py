@@ -17,10 +17,12 @@ from mcap.records import Metadata as MetadataRecord
 from aionode.bag._bag import Bag, merged_topics, source_of
 from aionode.bag.files.chunks import HEAD, MESSAGE, checked_content
 from aionode.bag.files.compression import TooLargeError
-from aionode.bag.files.mcap_writer import MAGIC, McapWriter, Span, index_record
+from aionode.bag.files.lock import FolderLock
+from aionode.bag.files.mcap_writer import LIBRARY, MAGIC, McapWriter, Span, index_record
 from aionode.bag.files.metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
 from aionode.bag.files.source import CHECK, DAMAGE, McapSource, damaged
 from aionode.bag.files.summary import index_of, read_summary
+from aionode.clock import Clock, ClockType
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
@@ -35,6 +37,9 @@ LONGEST_HEADER: Final = 64
 
 UNKNOWN: Final = 0x80
 """The first opcode of the range that MCAP reserves for programs; all other readers skip it."""
+
+QUIET_SEC: Final = 5.0
+"""How long nothing must have been written to a file that a program without our lock left open."""
 
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 
@@ -60,13 +65,14 @@ def check(path: str | PathLike[str]) -> list[Checked]:
 
     All messages are read. A damaged MCAP file is truncated after its last complete chunk and gets a
     new summary; earlier damaged chunks are turned into records that readers skip. Other files are
-    not changed.
+    not changed. A bag that is being recorded is refused, also while its topics are silent.
 
     Args:
         path: A folder, or a single file.
 
     Raises:
-        BagError: a file cannot be repaired; the others were checked nevertheless.
+        BagError: a file cannot be repaired; the others were checked nevertheless. Or the bag is
+            being recorded, and nothing was done.
         FileNotFoundError: there is no such file or folder.
         OSError: a file cannot be read or written.
     """
@@ -75,11 +81,17 @@ def check(path: str | PathLike[str]) -> list[Checked]:
         raise FileNotFoundError(f"bag {path}: there is no such file or folder")
     if not place.is_dir():
         return [check_file(place)]
+    with FolderLock(place) as lock:
+        return check_folder(place, lock)
+
+
+def check_folder(place: Path, lock: FolderLock) -> list[Checked]:
+    """Check the files of a folder whose lock is held, and its metadata."""
     checked: list[Checked] = []
     failures: list[BagError] = []
     for file in files_of(place):
         try:
-            checked.append(check_file(file))
+            checked.append(check_file(file, lock))
         except BagError as error:
             failures.append(error)
     if failures:
@@ -87,7 +99,7 @@ def check(path: str | PathLike[str]) -> list[Checked]:
     for left in (".reserve", f".{FILE_NAME}"):
         (place / left).unlink(missing_ok=True)
     if not is_indexed(place, checked):
-        reindex(place)
+        rebuild_metadata(place)
     return checked
 
 
@@ -117,16 +129,40 @@ def files_of(folder: Path) -> list[Path]:
     return sorted(files, key=number)
 
 
-def check_file(file: Path) -> Checked:
-    """Check one file, and repair it if it is a damaged MCAP file."""
+def check_file(file: Path, lock: FolderLock | None = None) -> Checked:
+    """Check one file, and repair it if it is a damaged MCAP file, under the lock of its folder."""
     try:
         return Checked(file.name, False, readable_messages(file), 0)  # a tuple
     except BagError as error:
         if file.suffix != ".mcap" or error.remedy != CHECK:
             raise
+    if lock is None:
+        with FolderLock(file.resolve().parent) as own:
+            return check_file(file, own)  # its recorder may just have closed it
+    if not lock.is_held or is_of_another_program(file):
+        expect_quiet(file)
     found = repaired(file, file.stat().st_size)
     readable_messages(file)
     return found
+
+
+def is_of_another_program(file: Path) -> bool:
+    """Return whether a file says that a program wrote it that does not know of our lock."""
+    with file.open("rb") as stream:
+        begin = stream.read(LONGEST_HEADER)
+    is_mcap = begin.startswith(MAGIC) and not has_hardly_begun(file)
+    return is_mcap and LIBRARY.encode() not in begin
+
+
+def expect_quiet(file: Path) -> None:
+    """Raise the error for a file whose recorder may be alive, as nobody can tell from a lock."""
+    now = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
+    if abs(now - file.stat().st_mtime_ns) / 1e9 < QUIET_SEC:
+        raise BagError(
+            str(file),
+            "it is not closed, and was just written to",
+            f"end its recording first, or wait {QUIET_SEC:g} s if its recorder was killed",
+        )
 
 
 def readable_messages(file: Path) -> int:
@@ -353,12 +389,19 @@ def reindex(path: str | PathLike[str]) -> None:
         path: The folder.
 
     Raises:
-        BagError: there are no files, or one is damaged and `check` can repair it.
+        BagError: there are no files, one is damaged and `check` can repair it, or the bag is being
+            recorded.
         OSError: a file cannot be read, or the metadata cannot be written.
     """
     folder = Path(path)
     if not folder.is_dir():
         raise BagError(str(path), "only a folder has metadata", "give the folder of the bag")
+    with FolderLock(folder):
+        rebuild_metadata(folder)
+
+
+def rebuild_metadata(folder: Path) -> None:
+    """Write ``metadata.yaml`` from the files of a folder whose lock is held."""
     sources = []
     parts = []
     try:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._distribution import choose_distribution
+from aionode.bag.files.lock import FolderLock
 from aionode.bag.files.mcap_writer import COMPRESSIONS, McapWriter, write_error
 from aionode.bag.files.metadata import (
     FILE_NAME,
@@ -125,6 +126,7 @@ class BagWriter:
             ) from error
         except OSError as error:
             raise BagWriteError(str(path), error.strerror or str(error)) from error
+        self._lock = FolderLock(self.path)
         try:
             sync_folder(self.path.parent)
             (self.path / RESERVE).write_bytes(b"#" * RESERVE_BYTES)
@@ -269,9 +271,13 @@ class BagWriter:
             BagWriteError: messages were lost because the disk was full or failed; the bag is
                 readable nevertheless.
         """
-        if not self._is_open:
-            return
-        self._is_open = False
+        if self._is_open:
+            self._is_open = False
+            with self._lock:
+                self._finish()
+
+    def _finish(self) -> None:
+        """Write all that is missing."""
         with contextlib.suppress(OSError):
             (self.path / RESERVE).unlink()
         failure: BagWriteError | None = None

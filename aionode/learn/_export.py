@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode import bag
-from aionode.clock import Clock, ClockType
 from aionode.errors import BagError, DatasetError
 from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
 from aionode.learn._episode import PART, Job, contract_in, run
@@ -32,11 +31,6 @@ PARTS: Final = ".parts"
 """The folder with what is exported so far, from which an export goes on."""
 
 REPORT: Final = "meta/report.json"
-
-QUIET_SEC: Final = 5.0
-"""How long nothing was written to a bag whose recorder was killed; one that records syncs twice a
-second.
-"""
 
 TOLD_SEC: Final = 0.2
 """How often processes are asked for their progress."""
@@ -107,7 +101,7 @@ def export(
         progress: Called with the messages read so far, and all that are to be read.
 
     Raises:
-        BagError: one of them is no bag (a ValueError).
+        BagError: one of them is no bag, or is being recorded (a ValueError).
         ContractError: a contract is not valid (a ValueError).
         DatasetError: the folder has a data set, no contract fits, no bag has a row, or the data set
             cannot be read back (a ValueError).
@@ -162,20 +156,11 @@ def repair(path: Path) -> None:
     """Close the bag of a recorder that was killed; all but the last second is there.
 
     Raises:
-        BagError: it is damaged otherwise (a ValueError).
-        DatasetError: it may still be recorded (a ValueError).
+        BagError: it is damaged otherwise, or is being recorded (a ValueError).
     """
     try:
         bag.open(path).close()
-    except BagError as error:
-        now = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
-        newest = max((each.stat().st_mtime_ns for each in path.glob("*.mcap")), default=0)
-        if (now - newest) / 1e9 < QUIET_SEC:
-            raise DatasetError(
-                str(path),
-                "it is not closed, and was just written to",
-                f"end its recording first, or wait {QUIET_SEC:g} s if its recorder was killed",
-            ) from error
+    except BagError:
         bag.check(path)
 
 

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COMPRESSIONS",
+    "LIBRARY",
     "MAGIC",
     "ChunkWriter",
     "McapWriter",
