@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from aionode._process.concurrency import run_in_thread
 from aionode.action import CancelResponse
 from aionode.bag import Recorder
-from aionode.errors import AionodeError, EpisodeError, escaped
+from aionode.errors import AionodeError, BagWriteError, EpisodeError, escaped
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn._metadata import CONTRACT_KEY, OUTCOME_KEY, TASK_KEY
 from aionode.message import ActionType, Message, float64, uint64
@@ -144,6 +144,9 @@ class Episodes:
         self._topics = [self.node.resolve_topic_name(name) for name in (*contract.topics, *topics)]
         self._recorder: Recorder | None = None
         self._turn = asyncio.Lock()
+        self._failed = asyncio.Event()
+        self._failure: BagWriteError | None = None
+        self._watch: asyncio.Task[None] | None = None
         for name, act in (
             ("start", self.start),
             ("end", self.end),
@@ -163,6 +166,7 @@ class Episodes:
     async def __aenter__(self) -> Self:
         async with AsyncExitStack() as stack:
             await stack.enter_async_context(self.node)
+            self._tasks = await stack.enter_async_context(asyncio.TaskGroup())
             stack.push_async_callback(self._close)
             self._stack = stack.pop_all()
         return self
@@ -227,6 +231,8 @@ class Episodes:
             )
             await recorder.__aenter__()
             self._recorder = recorder
+            self._failed.clear()
+            self._watch = self._tasks.create_task(self._wait_for_failure(recorder))
             self.current = Episode(path, task)
             self.node.get_logger().info(f"Recording {path}: {task}")
             return self.current
@@ -252,7 +258,27 @@ class Episodes:
         """Discard the episode, and begin another one of the same task."""
         return await self.start((await self.discard()).task)
 
+    async def failed(self) -> None:
+        """Wait until an episode cannot be written any more because the disk is full or fails.
+
+        The episode goes on, without what is sent from then on, until it is ended, as a failure, or
+        discarded.
+
+        Raises:
+            BagWriteError: always, at that point.
+        """
+        await self._failed.wait()
+        if self._failure is not None:
+            raise self._failure
+
     # Internals
+
+    async def _wait_for_failure(self, recorder: Recorder) -> None:
+        try:
+            await recorder.failed()
+        except BagWriteError as error:
+            self._failure = error
+            self._failed.set()
 
     def _next_path(self) -> Path:
         """Return the folder of the next episode."""
@@ -266,12 +292,19 @@ class Episodes:
             episode, recorder = self.current, self._recorder
             if episode is None or recorder is None:
                 raise EpisodeError("no episode is being recorded; start one")
+            if self._failed.is_set() and outcome == "success":
+                outcome = "failure"  # its end is missing
             episode.outcome = "discarded" if episode.outcome == "discarded" else outcome
             if episode.outcome:
                 recorder.annotate(OUTCOME_KEY, episode.outcome)
             self.current = self._recorder = None
+            if self._watch is not None:
+                self._watch.cancel()
             try:
                 await recorder.__aexit__(None, None, None)
+            except BagWriteError:
+                if episode.outcome != "discarded":
+                    raise
             finally:
                 episode.stats = recorder.stats
                 episode._ended.set()
@@ -298,7 +331,7 @@ class Episodes:
         begun = clock.now().nanoseconds
         async with self.record(goal.task) as episode:
             try:
-                while self.current is episode:
+                while self.current is episode and not self._failed.is_set():
                     is_over = goal.max_sec and clock.now().nanoseconds - begun >= goal.max_sec * 1e9
                     if is_over:
                         break

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
 import subprocess
 import sys
 import textwrap
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ from typing import Any
 import pytest
 
 from aionode import bag, image
+from aionode.action import GoalStatus
 from aionode.engine.context import Context
-from aionode.errors import BagError, EpisodeError
+from aionode.errors import BagError, BagWriteError, EpisodeError
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn import Contract, Episodes, RecordEpisode, check, export
@@ -167,6 +169,67 @@ async def test_a_goal_that_is_canceled_discards_its_episode(tmp_path: Path) -> N
         await goal.cancel()
         await goal.result()
         assert [*tmp_path.iterdir()] == []
+
+
+@pytest.fixture
+def full_disk(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
+    """Return what fills the disk."""
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
+
+    def is_full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    return lambda: monkeypatch.setattr("os.fdatasync", is_full)
+
+
+async def test_a_full_disk_is_told_while_the_episode_is_recorded(
+    tmp_path: Path, full_disk: Callable[[], None]
+) -> None:
+    """Whoever demonstrates would go on in vain. What was written before is there."""
+    async with recording(tmp_path) as (robot, episodes):
+        episode = await episodes.start()
+        full_disk()
+        await robot.step(3)
+        with pytest.raises(BagWriteError, match="free some space"):
+            await episodes.failed()
+        assert episodes.text.startswith("episode_0000: ")
+        with pytest.raises(BagWriteError, match="free some space"):
+            await episodes.end()
+        assert episodes.current is None
+        assert metadata(episode.path)["outcome"] == "failure"  # its end is missing
+
+
+async def test_an_episode_on_a_full_disk_can_be_discarded(
+    tmp_path: Path, full_disk: Callable[[], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That makes room for the next one."""
+    async with recording(tmp_path) as (robot, episodes):
+        await episodes.start()
+        full_disk()
+        await robot.step(3)
+        with pytest.raises(BagWriteError, match="free some space"):
+            await episodes.failed()
+        await episodes.discard()
+        assert [*tmp_path.iterdir()] == []
+        monkeypatch.undo()
+        async with episodes.record() as episode:
+            await robot.step(3)
+        assert episode.lost == 0
+
+
+async def test_a_goal_is_aborted_as_soon_as_the_disk_is_full(
+    tmp_path: Path, full_disk: Callable[[], None]
+) -> None:
+    """Its client may be the robot's program, which reads no log."""
+    async with recording(tmp_path) as (robot, episodes):
+        client = robot.node.create_action_client(RecordEpisode, "/episodes/record")
+        goal = await client.send_goal(RecordEpisode.Goal())
+        while episodes.current is None:
+            await settle()
+        full_disk()
+        await robot.step(3)
+        assert (await goal.result()).status == GoalStatus.STATUS_ABORTED
+        assert episodes.current is None
 
 
 async def test_an_episode_without_a_task_is_refused(tmp_path: Path) -> None:

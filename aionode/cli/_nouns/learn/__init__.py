@@ -76,7 +76,7 @@ def record_command(
 
     SPACE starts an episode, and ends it as a success; f ends it as a failure, d discards it, and r
     discards it and starts again. The services ~/start, ~/end, ~/fail, ~/discard and ~/again do the
-    same, and so does the action ~/record.
+    same, and so does the action ~/record. A full disk ends the command with status 1.
     """
     from aionode.engine.context import Context
     from aionode.learn import Contract, Episodes
@@ -91,7 +91,7 @@ def record_command(
         async with episodes, asyncio.TaskGroup() as tasks:
             with keys_pressed(episode_keys(episodes, tasks), wanted=True):
                 async with progress_shown(lambda: episodes.text, 3):
-                    await asyncio.Event().wait()
+                    await episodes.failed()
 
     status = run_until_stopped(record(), loop_factory=best_loop_factory())
     raise click.exceptions.Exit(status or 0)
