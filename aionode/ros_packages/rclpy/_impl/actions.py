@@ -297,7 +297,7 @@ class ActionServerHandle(ActionHandle):
     def process_cancel_request(self, request: Any) -> Any:
         """Return the response to a cancel request: the goals selected by its id and time.
 
-        The rules are those of `aionode.endpoints.actions.goal.goals_to_cancel`.
+        The rules are those of `aionode.engine.rules.cancel_selection`.
         """
         code, selected = goals_to_cancel(
             [goal_key(goal._goal_info, goal._status) for goal in list(self.goals.values())],
