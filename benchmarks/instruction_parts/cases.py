@@ -14,6 +14,7 @@ import socket
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from functools import partial
 from typing import Any, Final
 
 import zenoh
@@ -232,20 +233,23 @@ async def bare_socket(count: Count) -> AsyncIterator[Callable[[], Any]]:
 
 
 @asynccontextmanager
-async def in_process(count: Count) -> AsyncIterator[Callable[[], Any]]:
+async def in_process(count: Count, *, causes: bool = False) -> AsyncIterator[Callable[[], Any]]:
     """Publish to a callback of the same process."""
-    async with Context(transport="local") as context, node_of("one", context) as node:
+    async with (
+        Context(transport="local", causes=causes) as context,
+        node_of("one", context) as node,
+    ):
         publisher = node.create_publisher(String, "topic", SMALL)
         node.create_subscription(String, "topic", count.take, SMALL)
         yield lambda: publisher.publish(String(data=TEXT))
 
 
 @asynccontextmanager
-async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
+async def linked_nodes(*, causes: bool = False) -> AsyncIterator[tuple[Node, Node]]:
     """Return two nodes in two contexts, which are linked once they have matching endpoints."""
 
     def context() -> Context:
-        made = Context(transport="local")
+        made = Context(transport="local", causes=causes)
         made._transports = (LocalTransport(), link_of(made))  # noqa: SLF001  # with its own id
         return made
 
@@ -258,9 +262,9 @@ async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
 
 
 @asynccontextmanager
-async def linked_pair(count: Count) -> AsyncIterator[tuple[Any, Any]]:
+async def linked_pair(count: Count, *, causes: bool = False) -> AsyncIterator[tuple[Any, Any]]:
     """Return a publisher and the connection at the other end, which delivers to `count`."""
-    async with linked_nodes() as (one, two):
+    async with linked_nodes(causes=causes) as (one, two):
         publisher = one.create_publisher(String, "topic", SMALL)
         two.create_subscription(String, "topic", count.take, SMALL)
         while not (publisher.get_subscription_count() and is_linked(publisher)):
@@ -271,9 +275,9 @@ async def linked_pair(count: Count) -> AsyncIterator[tuple[Any, Any]]:
 
 
 @asynccontextmanager
-async def link_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
+async def link_publish(count: Count, *, causes: bool = False) -> AsyncIterator[Callable[[], Any]]:
     """Publish over a link; what arrives is read from the socket and dropped."""
-    async with linked_pair(count) as (publisher, connection):
+    async with linked_pair(count, causes=causes) as (publisher, connection):
         loop = asyncio.get_running_loop()
         sock = connection._sock  # noqa: SLF001  # to read past it
         loop.remove_reader(sock)
@@ -287,9 +291,9 @@ async def link_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
 
 
 @asynccontextmanager
-async def link_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
+async def link_receive(count: Count, *, causes: bool = False) -> AsyncIterator[Callable[[], Any]]:
     """Read frames from a link's socket, and call a callback."""
-    async with linked_pair(count) as (publisher, _):
+    async with linked_pair(count, causes=causes) as (publisher, _):
         gid = publisher._endpoint.gid  # noqa: SLF001  # for its frames
         (sender,) = publisher._writers[1].routes.send_queues  # noqa: SLF001  # its end of the link
         sock = sender._sock  # noqa: SLF001  # to write past it
@@ -393,6 +397,9 @@ CASES: Final[dict[str, Case]] = {
     "receive to callback, Zenoh": zenoh_receive,
     "timer tick": timer_tick,
     "service call and response, link": service_call,
+    "publish to callback, in process, causes kept": partial(in_process, causes=True),
+    "publish, link, causes kept": partial(link_publish, causes=True),
+    "receive to callback, link, causes kept": partial(link_receive, causes=True),
 }
 
 PILE: Final = bytes(2 << 20)  # twice the simulated cache
