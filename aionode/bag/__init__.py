@@ -19,6 +19,7 @@ from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
+    from aionode.bag._causes import why
     from aionode.bag._copy import convert, cut, merge
     from aionode.bag._repair import Checked, check, reindex
     from aionode.bag._selection import Selection
@@ -58,6 +59,7 @@ __all__ = [
     "qos_overrides",
     "reindex",
     "replay",
+    "why",
 ]
 
 PLACES = {
@@ -84,6 +86,7 @@ PLACES = {
     "qos_overrides": "files.qos",
     "reindex": "_repair",
     "replay": "replaying.replay",
+    "why": "_causes",
 }
 """The module of each public name, imported on first use: few programs need all of them."""
 

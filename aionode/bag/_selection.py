@@ -11,7 +11,10 @@ from aionode.errors import BagError
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-__all__ = ["ACTION_TOPICS", "EVENT_SUFFIX", "Selection", "kind_of"]
+__all__ = ["ACTION_TOPICS", "CAUSES", "EVENT_SUFFIX", "Selection", "kind_of"]
+
+CAUSES: Final = "/_aionode/causes"
+"""The topic of the causes that a recorder has asked for: it is in bags only, and is not played."""
 
 EVENT_SUFFIX: Final = "/_service_event"
 ACTION: Final = "/_action/"

@@ -17,9 +17,10 @@ from aionode.engine.cause_reports import (
     clock_id,
     decoded,
     encoded,
+    is_internal,
 )
-from aionode.engine.causes import Kind
-from aionode.graph import EndpointInfo, EndpointKind
+from aionode.engine.causes import MOST_CAUSES, Kind
+from aionode.graph import EndpointKind
 from aionode.names import is_hidden
 from aionode.observe._snapshot import ANSWER_S
 
@@ -28,13 +29,16 @@ if TYPE_CHECKING:
 
     from aionode.node import Node
 
-__all__ = ["Cause", "Caused", "Why", "why"]
+__all__ = ["Cause", "Caused", "Findings", "Sender", "Why", "named_in", "senders_in", "why"]
 
 MOST_ROUNDS: Final = 64
 """How often processes are asked for what came before, at most: how many there are in a chain."""
 
 MOST_ENTRIES: Final = 1000
 """How many things that were sent are followed back, at most."""
+
+MOST_DRAWN: Final = 2 * MOST_ENTRIES
+"""How many things that were sent a tree shows with their causes, at most."""
 
 Unknown: TypeAlias = Literal[
     "", "no aionode", "older", "silent", "not kept", "forgotten", "above", "too far", "hidden"
@@ -138,66 +142,71 @@ async def why(node: Node, name: str, *, timeout_sec: float = ANSWER_S) -> Why:
     return inquiry.found
 
 
-class Inquiry:
-    """What is known so far.
+class Sender(msgspec.Struct, array_like=True, frozen=True):
+    """An endpoint in the graph, which may have sent something.
+
+    Attributes:
+        gid: Its gid.
+        kind: What it is.
+        name: Its topic or service.
+        node: The full name of its node.
+        participant: The context of its node.
+    """
+
+    gid: bytes
+    kind: EndpointKind
+    name: str
+    node: str
+    participant: str
+
+
+def senders_in(node: Node) -> list[Sender]:
+    """Return all endpoints that a node sees."""
+    return [
+        Sender(
+            each.gid, each.kind, each.name, each.node.fully_qualified_name, each.node.participant
+        )
+        for each in node.graph.endpoints()
+    ]  # fmt: skip
+
+
+def named_in(node: Node) -> dict[str, list[str]]:
+    """Return the nodes of each context that a node sees, but for hidden ones."""
+    named: dict[str, list[str]] = {}
+    for info in node.graph.nodes():
+        if not is_hidden(info.fully_qualified_name):
+            named.setdefault(info.participant, []).append(info.fully_qualified_name)
+    return {participant: sorted(names) for participant, names in named.items()}
+
+
+class Findings:
+    """What processes have told, from which the tree of causes is made.
 
     Attributes:
         found: The result, but for the tree.
         sent: What was sent, with the report that tells of it, by key.
+        now_ns: The moment from which ages count back.
+        senders: The endpoints of the graph, by gid.
+        named: The nodes of each context.
+        offsets: From the clock of each context to that of `now_ns`.
     """
 
-    def __init__(self, node: Node, name: str, timeout_sec: float) -> None:
+    def __init__(self, name: str, now_ns: int) -> None:
         self.found = Why(name)
         self.sent: dict[Key, tuple[SentReport, CauseReport]] = {}
-        self._node = node
-        self._timeout_sec = timeout_sec
-        self._asked: set[Key] = set()
-        self._offsets: dict[str, int] = {}  # by participant: from its clock to this one
-        self._now_ns = perf_ns()
-        self._endpoints = {each.gid: each for each in node.graph.endpoints()}
-        self._named: dict[str, list[str]] = {}
+        self.now_ns = now_ns
+        self.senders: dict[bytes, Sender] = {}
+        self.named: dict[str, list[str]] = {}
+        self.offsets: dict[str, int] = {}
         self._drawn: set[Key] = set()
-        for info in node.graph.nodes():
-            if not is_hidden(info.fully_qualified_name):
-                self._named.setdefault(info.participant, []).append(info.fully_qualified_name)
 
-    async def ask(self, question: CauseQuestion, participants: Collection[str] | None) -> None:
-        """Ask some contexts, or all; and keep what they tell."""
-        self._asked.update(question.keys)
-        context = self._node.context
-        if participants is None or context.participant in participants:
-            self._keep(answer(context.causes, context.participant, question))
-        gone = {*self.found.silent, *self.found.older, *self.found.unreadable}
-        others = None if participants is None else set(participants) - gone - {context.participant}
-        if others is not None and not others:
-            return
-        data = encoded(question)
-        for transport in context.transports:
-            told = await transport.observe("causes", data, self._timeout_sec, others)
-            for participant, told_of in told.items():
-                self._take(participant, told_of)
-
-    def _take(self, participant: str, told: bytes | None) -> None:
-        nodes = sorted(self._named.get(participant, []))
-        if told is None:
-            if nodes:  # others have just ended, or are tools
-                self.found.silent[participant] = nodes
-        elif not told:
-            self.found.older[participant] = nodes
-        elif (report := decoded(told)) is not None and report.participant == participant:
-            self._keep(report)
-        else:
-            self.found.unreadable[participant] = nodes
-
-    def _keep(self, report: CauseReport) -> None:
-        nodes = sorted(self._named.get(report.participant, []))
+    def note(self, report: CauseReport, offset_ns: int) -> None:
+        """Note who has told something, and how far its clock is off."""
+        nodes = self.named.get(report.participant, [])
         if not report.is_kept and nodes:
             self.found.not_kept[report.participant] = nodes
-        offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
-        known = self._offsets.get(report.participant, offset)
-        self._offsets[report.participant] = min(known, offset)
-        for entry in report.sent:
-            self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
+        known = self.offsets.get(report.participant, offset_ns)
+        self.offsets[report.participant] = min(known, offset_ns)
 
     def roots(self) -> list[SentReport]:
         """Return what was asked for: the latest of all; of a node, all that it has sent."""
@@ -210,57 +219,43 @@ class Inquiry:
         if entries:
             return [max(entries, key=self._at_ns)]
         latest: dict[tuple[str, str], SentReport] = {}
-        for entry, report in self.sent.values():
-            if entry.node == full and entry in report.sent:
+        for entry, _ in self.sent.values():
+            if entry.node == full and entry.kind != "timer" and not is_internal(entry.name):
                 key = entry.kind, entry.name
                 if key not in latest or self._at_ns(latest[key]) < self._at_ns(entry):
                     latest[key] = entry
         return sorted(latest.values(), key=self._at_ns, reverse=True)
 
-    def missing(self) -> dict[Key, list[str]]:
-        """Return what came before and was not asked for, with the contexts that may know."""
-        found: dict[Key, list[str]] = {}
-        for entry, _ in self.sent.values():
-            for run in entry.causes:
-                key = run.kind, run.gid, run.sequence
-                if key not in self.sent and key not in self._asked and run.kind != "timer":
-                    owners = self._owners(run)
-                    self._asked.add(key)
-                    if owners:
-                        found[key] = owners
-        return found
-
-    def _owners(self, run: RunReport) -> list[str]:
-        """Return the contexts that may have sent what a run took."""
-        if run.kind == "response":
-            return sorted({each.node.participant for each in self._servers(run)})
-        sender = self._endpoints.get(run.gid)
-        return [] if sender is None else [sender.node.participant]
-
-    def _servers(self, run: RunReport) -> list[EndpointInfo]:
-        return self._node.graph.endpoints(EndpointKind.SERVER, name=run.name)
-
-    # The tree
+    def _servers(self, run: RunReport) -> list[Sender]:
+        return [
+            each
+            for each in self.senders.values()
+            if each.kind is EndpointKind.SERVER and each.name == run.name
+        ]
 
     def _at_ns(self, entry: SentReport) -> int:
         _, report = self.sent[entry.kind, entry.gid, entry.sequence]
-        return entry.at_ns + self._offsets[report.participant]
+        return entry.at_ns + self.offsets[report.participant]
 
     def caused(self, entry: SentReport, above: tuple[Key, ...]) -> Caused:
         """Return something that was sent, with its causes."""
         key = entry.kind, entry.gid, entry.sequence
         _, report = self.sent[key]
-        is_known = key not in self._drawn and len(above) < MOST_ROUNDS * 2
+        is_known = key not in self._drawn and not (
+            len(above) >= MOST_ROUNDS * 2 or len(self._drawn) >= MOST_DRAWN
+        )
         unknown: Unknown = "" if is_known else "above" if key in self._drawn else "too far"
         self._drawn.add(key)
-        causes = (self._cause(entry, run, report, (*above, key)) for run in entry.causes)
+        causes = (
+            self._cause(entry, run, report, (*above, key)) for run in entry.causes[:MOST_CAUSES]
+        )
         return Caused(
             entry.kind,
             entry.name,
             entry.node,
             entry.gid.hex(),
             entry.sequence,
-            max(self._now_ns - self._at_ns(entry), 0),
+            max(self.now_ns - self._at_ns(entry), 0),
             tuple(causes) if is_known else (),
             unknown if entry.causes else "",
         )
@@ -285,18 +280,18 @@ class Inquiry:
             return self.caused(known[0], above)
         if run.kind == "timer" and not run.sequence:
             return None
-        arrived_ns = run.entered_ns + self._offsets[report.participant]
+        arrived_ns = run.entered_ns + self.offsets[report.participant]
         senders = self._servers(run) if run.kind == "response" else []
-        if run.gid in self._endpoints and run.kind != "response":
-            senders = [self._endpoints[run.gid]]
+        if run.gid in self.senders and run.kind != "response":
+            senders = [self.senders[run.gid]]
         return Caused(
             run.kind,
             run.name,
-            senders[0].node.fully_qualified_name if senders else "",
+            senders[0].node if senders else "",
             run.gid.hex(),
             run.sequence,
-            max(self._now_ns - arrived_ns, 0),
-            unknown=self._reason(senders[0].node.participant) if senders else "forgotten",
+            max(self.now_ns - arrived_ns, 0),
+            unknown=self._reason(senders[0].participant) if senders else "forgotten",
         )
 
     def _reason(self, participant: str) -> Unknown:
@@ -305,7 +300,7 @@ class Inquiry:
             ("not kept", self.found.not_kept),
             ("silent", self.found.silent),
             ("older", (*self.found.older, *self.found.unreadable)),
-            ("forgotten", self._offsets),
+            ("forgotten", self.offsets),
         )
         return next((reason for reason, those in reasons if participant in those), "no aionode")
 
@@ -318,11 +313,76 @@ class Inquiry:
         }
         return [
             Caused(
-                kinds[each.kind], each.name, each.node.fully_qualified_name, each.gid.hex(), 0,
-                None, unknown=self._reason(each.node.participant),
+                kinds[each.kind], each.name, each.node, each.gid.hex(), 0,
+                None, unknown=self._reason(each.participant),
             )
-            for each in self._endpoints.values()
+            for each in self.senders.values()
             if each.name == full and each.kind in kinds and not is_hidden(
-                each.node.fully_qualified_name
+                each.node
             )
         ]  # fmt: skip
+
+
+class Inquiry(Findings):
+    """What the processes have told so far of what they are asked for."""
+
+    def __init__(self, node: Node, name: str, timeout_sec: float) -> None:
+        super().__init__(name, perf_ns())
+        self._node = node
+        self._timeout_sec = timeout_sec
+        self._asked: set[Key] = set()
+        self.senders = {each.gid: each for each in senders_in(node)}
+        self.named = named_in(node)
+
+    async def ask(self, question: CauseQuestion, participants: Collection[str] | None) -> None:
+        """Ask some contexts, or all; and keep what they tell."""
+        self._asked.update(question.keys)
+        context = self._node.context
+        if participants is None or context.participant in participants:
+            self._keep(answer(context.causes, context.participant, question))
+        gone = {*self.found.silent, *self.found.older, *self.found.unreadable}
+        others = None if participants is None else set(participants) - gone - {context.participant}
+        if others is not None and not others:
+            return
+        data = encoded(question)
+        for transport in context.transports:
+            told = await transport.observe("causes", data, self._timeout_sec, others)
+            for participant, told_of in told.items():
+                self._take(participant, told_of)
+
+    def _take(self, participant: str, told: bytes | None) -> None:
+        nodes = self.named.get(participant, [])
+        if told is None:
+            if nodes:  # others have just ended, or are tools
+                self.found.silent[participant] = nodes
+        elif not told:
+            self.found.older[participant] = nodes
+        elif (report := decoded(told)) is not None and report.participant == participant:
+            self._keep(report)
+        else:
+            self.found.unreadable[participant] = nodes
+
+    def _keep(self, report: CauseReport) -> None:
+        self.note(report, 0 if report.clock == clock_id() else perf_ns() - report.now_ns)
+        for entry in report.sent:
+            self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
+
+    def missing(self) -> dict[Key, list[str]]:
+        """Return what came before and was not asked for, with the contexts that may know."""
+        found: dict[Key, list[str]] = {}
+        for entry, _ in self.sent.values():
+            for run in entry.causes:
+                key = run.kind, run.gid, run.sequence
+                if key not in self.sent and key not in self._asked and run.kind != "timer":
+                    owners = self._owners(run)
+                    self._asked.add(key)
+                    if owners:
+                        found[key] = owners
+        return found
+
+    def _owners(self, run: RunReport) -> list[str]:
+        """Return the contexts that may have sent what a run took."""
+        if run.kind == "response":
+            return sorted({each.participant for each in self._servers(run)})
+        sender = self.senders.get(run.gid)
+        return [] if sender is None else [sender.participant]

@@ -7,22 +7,12 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.clock import S_TO_NS, perf_ns
-from aionode.engine.cause_reports import (
-    CauseQuestion,
-    CauseReport,
-    RunReport,
-    SentReport,
-    answer,
-    clock_id,
-    decoded,
-    encoded,
-)
-from aionode.names import is_hidden
-from aionode.observe._snapshot import ANSWER_S
+from aionode.observe._following import AFTER_ALL, Following
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from aionode.engine.cause_reports import CauseReport, RunReport, SentReport
     from aionode.node import Node
 
 __all__ = ["Trace", "record_trace"]
@@ -32,9 +22,6 @@ LOOK_S: Final = 0.2
 
 MOST_EVENTS: Final = 1_000_000
 """How many callbacks and things sent a trace has at most."""
-
-AFTER_ALL: Final = 2**60
-"""A number that no callback has yet."""
 
 
 class Trace(msgspec.Struct):
@@ -79,79 +66,19 @@ async def record_trace(node: Node, duration_sec: float) -> Trace:
     return recording.trace()
 
 
-class Recording:
+class Recording(Following):
     """What the processes have told so far."""
 
     def __init__(self, node: Node) -> None:
-        self._node = node
-        self._trace = Trace([])
-        self._told: dict[str, CauseReport] = {}  # the latest answer of each context
-        self._offsets: dict[str, int] = {}  # from its clock to this one
+        super().__init__(node)
         self._runs: list[tuple[str, RunReport]] = []
         self._sent: list[tuple[str, SentReport]] = []
 
-    def _named(self, participant: str) -> list[str]:
-        names = (
-            each.fully_qualified_name
-            for each in self._node.graph.nodes()
-            if each.participant == participant
-        )
-        return sorted(name for name in names if not is_hidden(name))
-
-    async def look(self, first: int) -> None:
-        """Ask for what is new; contexts seen for the first time are asked from `first` on."""
-        context = self._node.context
-        trace = self._trace
-        self._keep(
-            answer(context.causes, context.participant, self._next(context.participant, first))
-        )
-        for transport in context.transports:
-            # Contexts that are new are found by a question for nothing.
-            told = await transport.observe("causes", encoded(CauseQuestion()), ANSWER_S)
-            trace.silent = {}
-            for participant, data in told.items():
-                if data is None:
-                    trace.silent[participant] = self._named(participant)
-                    continue
-                report = decoded(data) if data else None
-                if report is None or report.participant != participant:
-                    trace.older[participant] = self._named(participant)
-                elif not report.is_kept:
-                    self._keep(report)
-                else:
-                    await self._ask(transport, participant, first)
-
-    async def _ask(self, transport: Any, participant: str, first: int) -> None:
-        """Ask one context for all that is new."""
-        while True:
-            question = self._next(participant, first)
-            told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})
-            data = told.get(participant)
-            report = decoded(data) if data else None
-            if report is None or report.participant != participant:
-                return
-            self._keep(report)
-            if not report.runs and not report.sent:
-                return
-
-    def _next(self, participant: str, first: int) -> CauseQuestion:
-        told = self._told.get(participant)
-        return CauseQuestion(since=(first, first) if told is None else told.next)
-
-    def _keep(self, report: CauseReport) -> None:
+    def add(self, report: CauseReport) -> None:
+        """Keep what is new, up to a number."""
         participant = report.participant
-        offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
-        self._offsets[participant] = min(self._offsets.get(participant, offset), offset)
-        if not report.is_kept:
-            if nodes := self._named(participant):
-                self._trace.not_kept[participant] = nodes
-            return
-        before = self._told.get(participant)
-        self._told[participant] = report
-        if before is not None:
-            self._trace.lost += sum(report.begin) - sum(before.next)
         room = MOST_EVENTS - len(self._runs) - len(self._sent)
-        self._trace.lost += max(len(report.runs) + len(report.sent) - room, 0)
+        self.lost += max(len(report.runs) + len(report.sent) - room, 0)
         self._runs += [(participant, run) for run in report.runs[:room]]
         self._sent += [
             (participant, sent) for sent in report.sent[: max(room - len(report.runs), 0)]
@@ -159,19 +86,21 @@ class Recording:
 
     def trace(self) -> Trace:
         """Return the trace, whose time begins with the first thing in it."""
-        trace = self._trace
-        trace.callbacks = len(self._runs)
+        trace = Trace(
+            [], len(self._runs), self.lost, self.not_kept, self.silent,
+            self.older | self.unreadable,
+        )  # fmt: skip
         began_ns = min(
             [
-                *(run.began_ns + self._offsets[participant] for participant, run in self._runs),
-                *(sent.at_ns + self._offsets[participant] for participant, sent in self._sent),
+                *(run.began_ns + self.offsets[participant] for participant, run in self._runs),
+                *(sent.at_ns + self.offsets[participant] for participant, sent in self._sent),
             ],
             default=0,
         )
-        zeros = {each: began_ns - offset for each, offset in self._offsets.items()}
+        zeros = {each: began_ns - offset for each, offset in self.offsets.items()}
         drawing = Drawing(trace.events, zeros)
-        for participant, report in self._told.items():
-            nodes = ", ".join(self._named(participant))
+        for participant, report in self.told.items():
+            nodes = ", ".join(self.nodes_of(participant))
             drawing.add_process(
                 participant, f"{nodes or report.program} ({report.host} {report.pid})"
             )

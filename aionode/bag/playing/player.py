@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from aionode._process.concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.bag._bag import Batches, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._copy import merged_records
-from aionode.bag._selection import Selection
+from aionode.bag._selection import CAUSES, Selection
 from aionode.bag.files.record import MOST_NS, time_of
 from aionode.bag.playing.files import FilesInPlay, in_order_sent
 from aionode.bag.playing.requests import SOURCES, RequestSender
@@ -488,7 +488,9 @@ class Player:
         """Create the publisher of a topic, if it is selected and its type is known."""
         if self._selection is not None and not self._selection.wants(topic.name, topic.type):
             return
-        if (self._tells_time and topic.name == CLOCK_TOPIC) or topic.key in self._publishers:
+        if topic.name == CAUSES or topic.key in self._publishers:
+            return
+        if self._tells_time and topic.name == CLOCK_TOPIC:
             return
         if self._requests.takes(topic):
             self._publishers[topic.key] = None

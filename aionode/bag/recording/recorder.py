@@ -9,15 +9,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
 from aionode._process.concurrency import run_in_thread
-from aionode.bag._selection import Selection
+from aionode.bag._selection import CAUSES, Selection
 from aionode.bag._writer import BagWriter, topic_info
 from aionode.bag.recording.recording import Key, Recording, TopicStats, summary_of
 from aionode.bag.recording.services import RecorderServices
 from aionode.bag.recording.writer_thread import Row
-from aionode.clock import Time
+from aionode.clock import Clock, ClockType, Time
 from aionode.engine.wire import cdr
 from aionode.errors import BagError, InterfaceNotFoundError, TimeSourceChangedError
 from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node, direct_subscription
 from aionode.parameter import Parameter
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -30,12 +31,16 @@ if TYPE_CHECKING:
     from aionode.bag.files.mcap_writer import Parts
     from aionode.engine.context import Context
     from aionode.graph import EndpointInfo
+    from aionode.observe import CauseRecorder
 
 __all__ = ["Recorder", "TopicStats", "adapted_qos"]
 
 CACHE_BYTES: Final = 100 << 20
 LEAST_DEPTH: Final = 1000
 """Minimum depth of subscriptions: the loop may be busy for some milliseconds."""
+
+CAUSES_S: Final = 1.0
+"""How often the processes are asked for causes, in seconds; each keeps the last 4096."""
 
 BACK_NS: Final = 1_000_000_000
 """How far time must jump back to count as a clock that was set back, in nanoseconds."""
@@ -101,6 +106,8 @@ class Recorder:
         start_paused: Whether to start paused.
         loss_report_hz: Maximum rate at which losses are published, in Hz; 0 for never.
         custom_data: Additional metadata.
+        causes: Whether to also record the causes that processes keep (``AIONODE_CAUSES=1``), for
+            `bag.why`.
 
     Attributes:
         path: The folder of the bag.
@@ -136,6 +143,7 @@ class Recorder:
         start_paused: bool = False,
         loss_report_hz: float = 1.0,
         custom_data: Mapping[str, str] | None = None,
+        causes: bool = False,
     ) -> None:
         if max_files and not (max_bytes or max_duration_sec or max_messages):
             raise BagError(
@@ -176,6 +184,9 @@ class Recorder:
         self._use_sim_time = use_sim_time
         self._paused = start_paused
         self._loss_report_hz = loss_report_hz
+        self._records_causes = causes
+        self._causes: CauseRecorder | None = None
+        self._causes_lock = asyncio.Lock()
         self._unknown: dict[str, frozenset[bytes]] = {}
         self._unrecorded: set[str] = set()
         """Topics whose types are unknown."""
@@ -210,6 +221,8 @@ class Recorder:
             stack.callback(self._cancel_tasks)
             await self._subscribe_to_new()
             self._start_task(self._follow_graph())
+            if self._records_causes:
+                self._start_causes(stack)
             self._stack = stack.pop_all()
         return self
 
@@ -326,6 +339,7 @@ class Recorder:
         Raises:
             BagWriteError: the disk was full or failed; what was written before is readable.
         """
+        await self._record_causes()
         recording = self._recording
         if recording is None:
             return
@@ -364,6 +378,7 @@ class Recorder:
         """
         if not self._is_snapshot:
             raise BagError(str(self.path), "the recorder is not in snapshot mode")
+        await self._record_causes()
         await self._open_recording.do(self._open_recording.thread.write_snapshot)
 
     async def failed(self) -> None:
@@ -485,6 +500,37 @@ class Recorder:
             if graph.changes == changes:
                 await graph.changed()
 
+    def _start_causes(self, stack: AsyncExitStack) -> None:
+        """Record causes from now on, for the last time when `stack` ends."""
+        from aionode.observe import CauseRecorder  # few recorders need it
+
+        self._causes = CauseRecorder(self.node)
+        stack.push_async_callback(self._end_causes)
+        self._start_task(self._follow_causes())
+
+    async def _follow_causes(self) -> None:
+        clock = Clock(ClockType.STEADY_TIME, time_base=self.node.context.time_base)
+        while True:
+            await self._record_causes()
+            await clock.sleep(CAUSES_S)
+
+    async def _end_causes(self) -> None:
+        try:
+            await self._record_causes()
+        finally:
+            self._causes = None
+
+    async def _record_causes(self) -> None:
+        """Write the causes that the processes have kept since the last time."""
+        async with self._causes_lock:
+            if self._causes is None or self._recording is None or self._paused:
+                return
+            texts = await self._causes.texts()
+            now = self.node.get_clock().now()
+            if self._recording is not None:
+                for text in texts:
+                    self.write(CAUSES, String(data=text), now)
+
     async def _subscribe_to_new(self) -> None:
         """Subscribe to each selected topic that has no subscription yet."""
         if self._recording is None:
@@ -506,6 +552,8 @@ class Recorder:
         found: dict[Key, list[EndpointInfo]] = {}
         for endpoint in self._others(*kinds):
             if heard is not None and endpoint.name not in heard:
+                continue
+            if endpoint.name == CAUSES:  # only the recorder writes there
                 continue
             if self._selection.wants(endpoint.name, endpoint.type_name):
                 key = endpoint.name, endpoint.type_name, endpoint.type_hash

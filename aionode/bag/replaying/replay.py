@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from aionode.bag._bag import open as open_bag
+from aionode.bag._selection import CAUSES
 from aionode.bag.replaying.machine_use import MachineUse
 from aionode.bag.replaying.outputs import Outputs, Tap
 from aionode.clock import Time
@@ -46,8 +47,8 @@ __all__ = ["PIECE_VARIABLE", "Piece", "Replay", "replay"]
 PIECE_VARIABLE: Final = "AIONODE_REPLAY_PIECE"
 """The piece of a bag to replay instead of all of it, in JSON; set by ``bag shrink``."""
 
-NODE_OWNED: Final = ("/rosout", "/parameter_events")
-"""Topics that every node publishes itself, and that a replay skips."""
+SKIPPED: Final = ("/rosout", "/parameter_events", CAUSES)
+"""Topics that every node publishes itself, and what only a recorder has written."""
 
 logger = get_logger("aionode.bag.replay")
 
@@ -233,9 +234,7 @@ def absolute(topic: str) -> str:
 
 def is_input(topic: str) -> bool:
     """Return whether nodes listen to a recorded topic, rather than it being their own output."""
-    return topic not in NODE_OWNED and not (
-        "/_action/" in topic or topic.endswith("/_service_event")
-    )
+    return topic not in SKIPPED and not ("/_action/" in topic or topic.endswith("/_service_event"))
 
 
 def offered(info: TopicInfo) -> QoSProfile:

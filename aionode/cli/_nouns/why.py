@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING, Any
 import click
 import msgspec
 
+from aionode.cli._support.bags import open_bag
 from aionode.cli._support.completion import complete_names
-from aionode.cli._support.options import json_option, positive, ros2_options
+from aionode.cli._support.options import json_option, positive, ros2_options, seconds
+from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_verb
-from aionode.errors import CommandError
+from aionode.clock import Duration
+from aionode.errors import CommandError, escaped
 from aionode.observe import to_chains, why
 
 if TYPE_CHECKING:
-    from aionode.cli._support.output import Output
     from aionode.node import Node
+    from aionode.observe import Why
 
 __all__ = ["explain", "why_command"]
 
@@ -25,16 +28,43 @@ __all__ = ["explain", "why_command"]
 @click.option(
     "--timeout", type=positive, default=0.5, show_default=True, help="Time for an answer, in s."
 )
+@click.option(
+    "--from",
+    "bag_path",
+    metavar="BAG",
+    help="Answer from a recording with causes: `aionode bag record --causes`.",
+)
+@click.option("--at", type=seconds, help="With --from: at this time after its start, in s.")
 @json_option
 @ros2_options
-def why_command(json: bool, **options: Any) -> None:
+def why_command(
+    json: bool, name: str, bag_path: str | None, at: float | None, **options: Any
+) -> None:
     """Show what led to the latest message of a topic, from callback to callback.
 
     NAME is a topic, a service, an action, a node, or the id of a goal. Processes keep causes if
     they are started with AIONODE_CAUSES=1; the others are named. Nodes of ROS 2 are where a chain
     ends. The exit status is 1 if nothing is known of the name.
     """
-    run_verb(lambda node, output: explain(node, output=output, **options), json=json)
+    if bag_path is not None:
+        raise click.exceptions.Exit(explain_recorded(bag_path, name, at, Output(json=json)))
+    if at is not None:
+        raise click.UsageError("--at needs a recording: --from BAG")
+    run_verb(lambda node, output: explain(node, name, output=output, **options), json=json)
+
+
+def explain_recorded(path: str, name: str, at_sec: float | None, output: Output) -> int:
+    """Print what led to the latest thing of a name in a bag; return the same as `explain`.
+
+    Raises:
+        CommandError: there is no such bag.
+        BagError: the bag has no causes, or cannot be read.
+    """
+    from aionode import bag
+
+    with open_bag(path) as recording:
+        at = None if at_sec is None else Duration(seconds=at_sec)
+        return tell(bag.why(recording, name, at), output)
 
 
 async def explain(node: Node, name: str, *, output: Output, timeout: float = 0.5) -> int:
@@ -60,11 +90,16 @@ async def explain(node: Node, name: str, *, output: Output, timeout: float = 0.5
                 f"{name}: no topic, service, action, node or goal has this name; "
                 "`aionode graph` shows what there is"
             )
-        told = to_chains(found)
-        told = f"{full}: nothing is known to have been sent under this name" + (
+    return tell(found, output)
+
+
+def tell(found: Why, output: Output) -> int:
+    """Print what led to something; return 1 if nothing is known of it, else 0."""
+    told = to_chains(found)
+    if not found.sent:
+        name = escaped("/" + found.name.lstrip("/"), one_line=True)
+        told = f"{name}: nothing is known to have been sent under this name" + (
             f"\n{told}" if told else ""
         )
-        output.item(told, msgspec.to_builtins(found))
-        return 1
-    output.item(to_chains(found), msgspec.to_builtins(found))
+    output.item(told, msgspec.to_builtins(found))
     return int(all(each.unknown for each in found.sent))

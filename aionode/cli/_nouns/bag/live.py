@@ -134,6 +134,11 @@ def set_level(node: Node, level: str | None) -> None:
 )
 @click.option("--ignore-leaf-topics", is_flag=True, help="Skip topics without subscriptions.")
 @click.option("--node-name", default="rosbag2_recorder", help="Name of the node.")
+@click.option(
+    "--causes",
+    is_flag=True,
+    help="Also what `aionode why --from` needs, of processes with AIONODE_CAUSES=1.",
+)
 @click.option("--custom-data", multiple=True, help="KEY=VALUE pairs for the metadata.")
 @click.option(
     "--compression-format",
@@ -245,6 +250,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
         "use_sim_time": values["use_sim_time"],
         "start_paused": values["start_paused"],
         "loss_report_hz": values["stats_hz"],
+        "causes": values["causes"],
         "custom_data": dict(item.partition("=")[::2] for item in values["custom_data"]),
     }
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from aionode.cli._nouns.topic.measure import QOS, arrival_ns
+from aionode.cli._support.bags import open_bag
 from aionode.cli._support.braille import Line, chart
 from aionode.cli._support.command import command
 from aionode.cli._support.completion import complete_names
@@ -189,12 +190,10 @@ def read_bag(path: str, numbers: Sequence[Number], output: Output) -> None:
     """Read the numbers of a recording.
 
     Raises:
-        CommandError: it has none of a topic.
+        CommandError: there is no such bag, or it has nothing of a topic.
         BagError: it cannot be read.
     """
-    from aionode import bag
-
-    with bag.open(path) as recording:
+    with open_bag(path) as recording:
         has = set(recording.topics)
         for number in numbers:
             if number.topic not in has:

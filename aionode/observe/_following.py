@@ -1,0 +1,118 @@
+"""Asks all processes again and again for what they have noted of causes since."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.clock import perf_ns
+from aionode.engine.cause_reports import (
+    CauseQuestion,
+    CauseReport,
+    answer,
+    clock_id,
+    decoded,
+    encoded,
+)
+from aionode.observe._causes import named_in
+from aionode.observe._snapshot import ANSWER_S
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = ["AFTER_ALL", "Following"]
+
+AFTER_ALL: Final = 2**60
+"""A number that no callback has yet."""
+
+MOST_ANSWERS: Final = 16
+"""How often one context is asked in a look: its logs, of 4096 each, are told a thousand at once."""
+
+
+class Following:
+    """What the processes have told so far.
+
+    Attributes:
+        told: The latest answer of each context that keeps causes.
+        offsets: From the clock of each context to this one, in nanoseconds.
+        lost: How many callbacks and things sent were no longer kept when they were asked for.
+        not_kept: Contexts that keep no causes, each with the names of its nodes.
+        silent: Those that did not answer at the last look, in the same form.
+        older: Those whose aionode cannot keep causes.
+        unreadable: Those whose answer has another form than is known here.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self.told: dict[str, CauseReport] = {}
+        self.offsets: dict[str, int] = {}
+        self.lost = 0
+        self.not_kept: dict[str, list[str]] = {}
+        self.silent: dict[str, list[str]] = {}
+        self.older: dict[str, list[str]] = {}
+        self.unreadable: dict[str, list[str]] = {}
+
+    def add(self, report: CauseReport) -> None:
+        """Take an answer with what is new."""
+        raise NotImplementedError
+
+    def nodes_of(self, participant: str) -> list[str]:
+        """Return the names of the nodes of a context, but for hidden ones."""
+        return named_in(self._node).get(participant, [])
+
+    async def look(self, first: int) -> None:
+        """Ask for what is new; contexts seen for the first time are asked from `first` on."""
+        context = self._node.context
+        self.silent = {}
+        for _ in range(MOST_ANSWERS):
+            question = self._next(context.participant, first)
+            own = answer(context.causes, context.participant, question)
+            self._keep(own)
+            if not own.runs and not own.sent:
+                break
+        for transport in context.transports:
+            # Contexts that are new are found by a question for nothing.
+            told = await transport.observe("causes", encoded(CauseQuestion()), ANSWER_S)
+            for participant, data in told.items():
+                if data is None:
+                    self.silent[participant] = self.nodes_of(participant)
+                    continue
+                report = decoded(data)
+                if not data:
+                    self.older[participant] = self.nodes_of(participant)
+                elif report is None or report.participant != participant:
+                    self.unreadable[participant] = self.nodes_of(participant)
+                elif not report.is_kept:
+                    self._keep(report)
+                else:
+                    await self._ask(transport, participant, first)
+
+    async def _ask(self, transport: Any, participant: str, first: int) -> None:
+        """Ask one context for all that is new."""
+        for _ in range(MOST_ANSWERS):
+            question = self._next(participant, first)
+            told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})
+            data = told.get(participant)
+            report = decoded(data) if data else None
+            if report is None or report.participant != participant:
+                return
+            self._keep(report)
+            if not report.runs and not report.sent:
+                return
+
+    def _next(self, participant: str, first: int) -> CauseQuestion:
+        told = self.told.get(participant)
+        return CauseQuestion(since=(first, first) if told is None else told.next)
+
+    def _keep(self, report: CauseReport) -> None:
+        participant = report.participant
+        offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
+        self.offsets[participant] = min(self.offsets.get(participant, offset), offset)
+        if not report.is_kept:
+            if nodes := self.nodes_of(participant):
+                self.not_kept[participant] = nodes
+        else:
+            before = self.told.get(participant)
+            self.told[participant] = report
+            if before is not None:
+                self.lost += sum(report.begin) - sum(before.next)
+        self.add(report)

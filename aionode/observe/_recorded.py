@@ -1,0 +1,194 @@
+"""Causes in a recording: what processes tell second by second, and the answer from it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from aionode._process.recent import Recent
+from aionode.clock import perf_ns
+from aionode.engine.cause_reports import (
+    LARGEST_REPORT,
+    MOST_AT_ONCE,
+    UNREADABLE,
+    CauseReport,
+    Key,
+    SentReport,
+)
+from aionode.engine.causes import MOST_SENDERS, Kind
+from aionode.observe._causes import Findings, Sender, Why, named_in, senders_in
+from aionode.observe._following import Following
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = ["CauseRecorder", "RecordedCauses"]
+
+MOST_READ: Final = 100_000
+"""How many things that were sent are kept while a recording is read, the latest."""
+
+MOST_ENDPOINTS: Final = 20_000
+"""How many endpoints, and how many contexts, are kept while a recording is read."""
+
+
+class CauseRecord(msgspec.Struct):
+    """What one context has told; or, without a report, the graph at the end of a look.
+
+    Attributes:
+        now_ns: When it was told, by the steady clock of the recorder.
+        time_ns: The same by the clock of the recorder's node, as in the recording.
+        report: The answer of a context, without its runs.
+        offset_ns: From the clock of that context to the recorder's.
+        named: The nodes of each context.
+        senders: The endpoints of the graph.
+        silent: The contexts that have not answered.
+        older: Those whose aionode cannot keep causes.
+        unreadable: Those whose answer could not be read.
+    """
+
+    now_ns: int
+    time_ns: int
+    report: CauseReport | None = None
+    offset_ns: int = 0
+    named: dict[str, list[str]] = {}
+    senders: list[Sender] = []
+    silent: list[str] = []
+    older: list[str] = []
+    unreadable: list[str] = []
+
+
+RECORDS: Final = msgspec.json.Decoder(CauseRecord)
+
+
+class CauseRecorder(Following):
+    """Asks the processes again and again for the causes that they have kept since.
+
+    Args:
+        node: A running node. It is not named among those that keep no causes.
+    """
+
+    def __init__(self, node: Node) -> None:
+        super().__init__(node)
+        self._texts: list[str] = []
+
+    def add(self, report: CauseReport) -> None:
+        """Take an answer; one that could not be read from a recording counts as unreadable."""
+        participant = report.participant
+        told = msgspec.structs.replace(report, runs=[], sent=report.sent[:MOST_AT_ONCE])
+        text = encoded(CauseRecord(*self._now(), told, self.offsets[participant]))
+        if decoded(text) is None:
+            self.unreadable[participant] = self.nodes_of(participant)
+        else:
+            self._texts.append(text)
+
+    async def texts(self) -> list[str]:
+        """Ask all processes once; return what to record, as texts for `RecordedCauses`.
+
+        The first texts have all that is still kept, the later ones what is new. Cancelling is safe.
+        """
+        await self.look(0)
+        named = named_in(self._node)
+        own = self._node.context.participant
+        name = self._node.get_fully_qualified_name()
+        named[own] = [each for each in named.get(own, []) if each != name]
+        graph = CauseRecord(
+            *self._now(),
+            named=named,
+            senders=senders_in(self._node)[:MOST_ENDPOINTS],
+            silent=list(self.silent),
+            older=list(self.older),
+            unreadable=list(self.unreadable),
+        )
+        texts, self._texts = [*self._texts, encoded(graph)], []
+        return texts
+
+    def _now(self) -> tuple[int, int]:
+        """Return the time by both clocks of the recorder."""
+        return perf_ns(), self._node.get_clock().now_ns()
+
+
+class RecordedCauses:
+    """The causes in a recording, read in order of time.
+
+    Of many, the latest 100,000 things that were sent are kept, and the last one of each sender.
+    """
+
+    def __init__(self) -> None:
+        self._sent: Recent[Key, tuple[SentReport, CauseReport]] = Recent(MOST_READ)
+        self._last: Recent[tuple[Kind, bytes, str], tuple[SentReport, CauseReport]] = Recent(
+            MOST_SENDERS
+        )
+        self._reports: Recent[str, tuple[CauseReport, int]] = Recent(MOST_ENDPOINTS)
+        self._named: Recent[str, list[str]] = Recent(MOST_ENDPOINTS)
+        self._senders: Recent[bytes, Sender] = Recent(MOST_ENDPOINTS)
+        self._graph = CauseRecord(0, 0)  # the latest
+        self._moment = 0, 0  # when the last one was told, by both clocks
+
+    def add(self, text: str) -> bool:
+        """Read a text; return whether it is one of a `CauseRecorder` of this version."""
+        record = decoded(text)
+        if record is None:
+            return False
+        self._moment = record.now_ns, record.time_ns
+        if record.report is None:
+            self._graph = record
+            for participant, names in record.named.items():
+                self._named.put(participant, names)
+            for sender in record.senders:
+                self._senders.put(sender.gid, sender)
+            return True
+        report = msgspec.structs.replace(record.report, sent=[])
+        offset_ns = record.offset_ns
+        if report.participant in self._reports:
+            offset_ns = min(offset_ns, self._reports[report.participant][1])
+        self._reports.put(report.participant, (report, offset_ns))
+        for entry in record.report.sent:
+            self._sent.put((entry.kind, entry.gid, entry.sequence), (entry, report))
+            self._last.put((entry.kind, entry.gid, entry.name), (entry, report))
+        return True
+
+    def why(self, name: str, at_ns: int | None = None) -> Why:
+        """Return what `observe.why` had answered at a time.
+
+        Args:
+            name: The name of a topic, service, action or node, or the id of a goal in hexadecimal.
+            at_ns: When, by the clock of the recording; by default when the last text was told.
+        """
+        now_ns, time_ns = self._moment
+        findings = Findings(name, now_ns if at_ns is None else now_ns - (time_ns - at_ns))
+        findings.senders = self._senders
+        findings.named = self._named
+        for report, offset_ns in self._reports.values():
+            findings.note(report, offset_ns)
+        found = findings.found
+        for those, participants in (
+            (found.silent, self._graph.silent),
+            (found.older, self._graph.older),
+            (found.unreadable, self._graph.unreadable),
+        ):
+            those.update({each: self._named.get(each, []) for each in participants})
+        found.silent = {each: names for each, names in found.silent.items() if names}
+        for entry, report in (*self._last.values(), *self._sent.values()):
+            offset = findings.offsets.get(report.participant)
+            if offset is not None and entry.at_ns + offset <= findings.now_ns:
+                findings.sent[entry.kind, entry.gid, entry.sequence] = entry, report
+        found.sent = [findings.caused(each, ()) for each in findings.roots()] or findings.leaves()
+        return found
+
+
+def encoded(record: CauseRecord) -> str:
+    """Return a record as a text."""
+    return msgspec.json.encode(record).decode()
+
+
+def decoded(text: str) -> CauseRecord | None:
+    """Return a text as a record; None if it is none that is known here."""
+    if len(text) > LARGEST_REPORT:
+        return None
+    try:
+        record = RECORDS.decode(text)
+        msgspec.msgpack.encode(record)  # refuses integers of more than 64 bits
+    except (*UNREADABLE, UnicodeEncodeError, OverflowError):
+        return None
+    return record
