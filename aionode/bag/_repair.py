@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from io import BytesIO
-from os import SEEK_END
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
@@ -139,11 +138,18 @@ def check_file(file: Path, lock: FolderLock | None = None) -> Checked:
     if lock is None:
         with FolderLock(file.resolve().parent) as own:
             return check_file(file, own)  # its recorder may just have closed it
-    if not lock.is_held or is_of_another_program(file):
+    if not is_closed(file) and (not lock.is_held or is_of_another_program(file)):
         expect_quiet(file)
     found = repaired(file, file.stat().st_size)
     readable_messages(file)
     return found
+
+
+def is_closed(file: Path) -> bool:
+    """Return whether a file has its end, so that its recorder is done with it."""
+    with file.open("rb") as stream:
+        stream.seek(max(file.stat().st_size - len(MAGIC), len(MAGIC)))
+        return stream.read() == MAGIC
 
 
 def is_of_another_program(file: Path) -> bool:
@@ -185,10 +191,9 @@ def repaired(file: Path, size: int) -> Checked:
         file.unlink()
         McapWriter(file).close()
         return Checked(file.name, repaired=True, messages=0, removed_bytes=size)
+    has_end = is_closed(file)
     with file.open("rb") as stream:
         scan = Scan(file, stream, size)
-        stream.seek(-len(MAGIC), SEEK_END)
-        has_end = stream.read() == MAGIC
     for at, _ in scan.damaged:
         pass_over(file, at)
     writer = McapWriter.resume(file, scan)

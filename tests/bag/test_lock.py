@@ -160,6 +160,13 @@ def test_a_file_that_another_program_was_just_writing_to_is_left_alone(tmp_path:
     assert bag.check(file)[0].repaired
 
 
+def test_a_file_of_another_program_that_has_its_end_is_repaired_at_once(tmp_path: Path) -> None:
+    """Its recorder is done with it, so it does not matter when that was."""
+    file = tmp_path / "run_0.mcap"
+    file.write_bytes(MAGIC + record_bytes(Header("ros2", "libmcap 1.1.0")) + MAGIC)
+    assert bag.check(file)[0].repaired
+
+
 def test_a_process_is_named_only_if_it_is_certain(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
