@@ -76,7 +76,7 @@ def test_no_verb_at_all_shows_what_there_is(
 
 
 def test_every_command_that_prints_data_has_json() -> None:
-    """Only commands that run or write programs, repair a bag, or print code have no records."""
+    """Only commands that run, take keys, write programs, repair a bag or print code have none."""
     without = {
         words
         for words, of_verb in commands()
@@ -88,6 +88,7 @@ def test_every_command_that_prints_data_has_json() -> None:
         "completion",
         "deploy",
         "gateway types",
+        "learn record",
         "new",
         "run",
         "teleop",

@@ -69,7 +69,8 @@ async def test_callbacks_and_arrows_are_true(way: str) -> None:
     assert min(each["ts"] for each in slices) == 0
     for end in ends:
         start = starts[end["id"]]
-        assert end["ts"] >= start["ts"] - 1000  # a link may deliver before the sender goes on
+        # A link may deliver before the sender goes on, which may have no processor meanwhile.
+        assert end["ts"] >= start["ts"] - 500_000
         assert any(
             call["tid"] == end["tid"] and call["ts"] == end["ts"] and call["name"] == "on_number"
             for call in calls

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["folder"]
 
-VALUES = {"Duration", "QoSProfile"}  # # part of the profile, which every endpoint has
+VALUES = {"Duration", "QoSProfile", "NodeInfo"}  # shared by all endpoints of a node
 
 
 def own_objects(root: object, shared: Iterable[object]) -> Counter[str]:
