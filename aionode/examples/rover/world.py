@@ -152,7 +152,8 @@ def pushed(ball: tuple[float, float], rover: Place) -> tuple[float, float]:
 def to_walls(place: Place, directions: Numbers) -> Numbers:
     """Return how many times each direction fits between a place and the next wall."""
     starts, lines = WALLS[:, :2] - place[:2], WALLS[:, 2:] - WALLS[:, :2]
-    with np.errstate(divide="ignore", invalid="ignore"):  # a line beside a wall never meets it
+    # A line beside a wall never meets it, or so far away that no number holds it.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         crossing = cross(directions[:, None], lines)
         along = cross(starts, lines) / crossing
         on_wall = cross(starts, directions[:, None]) / crossing
