@@ -39,7 +39,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 WRITING = Policy.default(allow_write=True)
 
 
-class DriveTo(ActionType, typename="rover_interfaces/action/DriveTo"):
+class DriveTo(ActionType, typename="page_test_interfaces/action/DriveTo"):
     """Drives to a place."""
 
     class Goal(Message):
