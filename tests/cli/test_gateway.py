@@ -103,3 +103,9 @@ async def test_types_writes_a_type_that_is_named(tool: Node, screen: Screen) -> 
 
     assert '  "geometry_msgs/msg/Twist": geometry_msgs.msg.Twist;' in screen.text
     assert "std_msgs" not in screen.text
+
+
+def test_a_package_of_assets_that_is_not_there_is_an_error() -> None:
+    """A misspelled name would only show as files that are missing."""
+    with pytest.raises(CommandError, match="--assets: no package 'no_such_package' in"):
+        serving(None, False, "127.0.0.1", 0, assets=["no_such_package"])

@@ -11,7 +11,7 @@ import click
 from aionode.cli._support.completion import complete_interfaces
 from aionode.cli._support.options import interfaces_option
 from aionode.cli._support.session import run_verb
-from aionode.errors import CommandError, InterfaceNotFoundError
+from aionode.errors import CommandError, InterfaceNotFoundError, PackageNotFoundError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Iterable, Sequence
@@ -118,9 +118,10 @@ def serving(
 
     Raises:
         PolicyFileError: the policy file cannot be read, or is not a policy.
-        CommandError: there is no such limit.
+        CommandError: there is no such limit, or no such package.
         ImportError: the extra ``gateway``, or for assistants ``mcp``, is not installed.
     """
+    from aionode._packages import here
     from aionode.gateway import Gateway, Limits, Policy
 
     if path is None:
@@ -128,6 +129,15 @@ def serving(
             given = Limits().with_given(limits)
         except ValueError as error:
             raise CommandError(f"--limit: {error}") from error
+        try:
+            for package in assets:
+                here().share(package)
+        except PackageNotFoundError as error:
+            near = f"; did you mean {error.suggestions[0]}?" if error.suggestions else ""
+            raise CommandError(
+                f"--assets: no package {error.name!r} in {', '.join(error.places)}{near}; start "
+                "the gateway in the workspace that has it"
+            ) from error
         policy = Policy.default(allow_write=allow_write, limits=given, assets=assets)
     else:
         policy = Policy.load(path)
