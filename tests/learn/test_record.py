@@ -17,14 +17,15 @@ import pytest
 
 from aionode import bag, image
 from aionode.action import GoalStatus
+from aionode.clock import Time
 from aionode.engine.context import Context
 from aionode.errors import BagError, BagWriteError, EpisodeError
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn import Contract, Episodes, RecordEpisode, check, export
 from aionode.node import Node
-from aionode.testing import local_context, settle
-from tests.support.demonstrations import angle, contract, picture, stamp
+from aionode.testing import ManualClock, local_context, settle
+from tests.support.demonstrations import START_NS, angle, contract, picture, stamp
 
 
 class Robot:
@@ -292,14 +293,21 @@ def test_an_episode_is_exported_once_its_recorder_was_killed(tmp_path: Path) -> 
 
 
 async def checked(made: Contract, *, steps: int = 30) -> Any:
-    """Check a robot that runs with a contract."""
-    async with local_context() as context:
+    """Check a robot that runs with a contract; the check ends when the robot has stepped."""
+    clock = ManualClock(Time(nanoseconds=START_NS))
+    async with local_context(clock=clock) as context:
         robot = Robot(context)
-        async with robot.node, Node("checker", context=context) as node:
-            checking = asyncio.ensure_future(check(node, made, 0.3))  # noqa: TID251  # beside it
-            await asyncio.wait((checking,), timeout=0.05)
+        async with (
+            robot.node,
+            Node("checker", context=context) as node,
+            asyncio.TaskGroup() as tasks,
+        ):
+            checking = tasks.create_task(check(node, made, 0.3))
+            await settle()
             await robot.step(steps)
-            return await checking
+            assert not checking.done()
+            await clock.advance(0.3)
+        return checking.result()
 
 
 async def test_a_check_tells_rate_age_and_qos_of_each_topic() -> None:
