@@ -219,10 +219,10 @@ async def test_a_teleoperator_has_the_commands_of_a_leader(plugin: Any, arm: Arm
     try:
         assert await asyncio.to_thread(teleop.get_action) == {"shoulder.vel": 0.0}
         await arm.leader.wait_for_subscribers()
-        arm.leader.publish(Float64MultiArray(data=[0.75]))
         async with asyncio.timeout(20):
+            arm.leader.publish(Float64MultiArray(data=[0.75]))
             while await asyncio.to_thread(teleop.get_action) != {"shoulder.vel": 0.75}:
-                pass
+                arm.leader.publish(Float64MultiArray(data=[0.75]))  # a command soon expires
             while await asyncio.to_thread(teleop.get_action) != {"shoulder.vel": 0.0}:
                 pass
     finally:
