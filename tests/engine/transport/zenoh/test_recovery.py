@@ -316,11 +316,15 @@ async def test_an_incomplete_answer_of_the_own_session_cuts_nobody_off(
         querier.get(answers)
         await asked.have(1)
 
+        comparisons.clear()  # those made while the sessions were opened
+        ended = str(one.zid())
         await asyncio.to_thread(one.close)
         await until_seen(ours, *names[1:])
+        await until(lambda: not ways_between(ours, ended))
         ways = all_ways(ours)
         await have_more(comparisons, 6)
 
+        assert not any(comparisons)  # none that was missing, for which connections are cut
         assert all_ways(ours) == ways
         (query,) = asked.items
         query.reply(query.key_expr, b"answer")
