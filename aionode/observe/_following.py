@@ -114,5 +114,6 @@ class Following:
             before = self.told.get(participant)
             self.told[participant] = report
             if before is not None:
-                self.lost += sum(report.begin) - sum(before.next)
+                # Those that a context tells again take nothing from what others have lost.
+                self.lost += max(sum(report.begin) - sum(before.next), 0)
         self.add(report)

@@ -9,12 +9,15 @@ from typing import Any, Final
 
 import pytest
 
-from aionode import Node
+from aionode import Context, Node
 from aionode.cli._nouns.trace import record
 from aionode.cli._support.output import Output
+from aionode.engine.cause_reports import CauseQuestion, answer, encoded
+from aionode.engine.causes import CauseLog
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.observe import record_trace
 from aionode.testing import local_context
+from tests.observe.test_observe import Answering
 from tests.support.peers import contexts_over
 
 REQUIRED: Final = {
@@ -87,6 +90,17 @@ async def test_callbacks_and_arrows_are_true(way: str) -> None:
         for other in calls:
             if one is not other and one["tid"] == other["tid"] and one["ts"] <= other["ts"]:
                 assert other["ts"] >= one["ts"] + one["dur"] - 0.001
+
+
+async def test_a_context_that_counts_backwards_hides_no_loss() -> None:
+    """Its numbers made the count of what was lost negative."""
+    report = answer(CauseLog(), "d4", CauseQuestion())
+    report.next = 100, 100
+    async with (
+        Context(transport=Answering({"d4": encoded(report)}), causes=True) as context,
+        Node("robot", context=context) as node,
+    ):
+        assert (await record_trace(node, 0.01)).lost == 0
 
 
 async def test_the_command_writes_a_file_and_names_who_takes_no_part(
