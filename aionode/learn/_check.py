@@ -5,10 +5,11 @@ from __future__ import annotations
 import difflib
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.bag import Record, TopicInfo
 from aionode.bag.recording.recorder import adapted_qos
+from aionode.clock import S_TO_NS
 from aionode.graph import EndpointKind
 from aionode.learn._alignment import aligned
 from aionode.learn._report import lags, topic_of, topic_text, trouble_of
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = ["Checked", "check"]
+
+SILENT_NS: Final = 500_000_000
+"""How long nothing may come of a topic that is observed, beyond its `max_age`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +60,14 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
             node,
             each[0].entry.message_type,
             name,
-            partial(take, each, TopicInfo(name=name, type=each[0].entry.type)),
+            partial(take, node, each, TopicInfo(name=name, type=each[0].entry.type)),
             adapted_qos([endpoint.qos for endpoint in publishers[name]]),
         )
         for name, each in by_topic.items()
     ]
     try:
         await node.get_clock().sleep(duration_sec)
+        end_ns = node.get_clock().now_ns()
     finally:
         for subscription in subscriptions:
             subscription.destroy()
@@ -79,6 +84,9 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
         problems += problems_of(node, contract, entry, topic, publishers[name]) or trouble_of(
             contract, entry, topic, rows.references
         )
+    problems += dict.fromkeys(
+        line for each in collected for line in silence_of(node, contract, each, end_ns)
+    )
     if not problems and not len(rows.times):
         problems.append("no picture had everything that is fresh enough; see the ages above")
     followed = lags(contract, rows) if rows.starts else {}
@@ -89,6 +97,7 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
 
 
 def take(
+    node: Node,
     collected: list[Collected],
     info: TopicInfo,
     raw: Any,
@@ -97,10 +106,25 @@ def take(
     received_ns: int,
 ) -> None:
     """Take a message of a subscription."""
+    clock = node.get_clock()
+    if clock.ros_time_is_active:  # of a simulation, as are the stamps
+        received_ns = clock.now_ns()
     joined = b"".join(raw) if isinstance(raw, list) else bytes(raw)
     record = Record(info, received_ns, source_ns, sequence, joined)
     for each in collected:
         each.take(record)
+
+
+def silence_of(node: Node, contract: Contract, collected: Collected, end_ns: int) -> list[str]:
+    """Return whether an observed topic fell silent before the end, with what to do."""
+    entry = collected.entry
+    if entry in contract.actions or not collected.rows or len(collected.rows) < collected.count:
+        return []  # what did not fit is told already
+    silent_ns = end_ns - collected.rows[-1][1]
+    if silent_ns <= contract.max_age(entry) * S_TO_NS + SILENT_NS:
+        return []
+    name = node.resolve_topic_name(entry.topic)
+    return [f"{name}: silent for the last {silent_ns / S_TO_NS:.1f} s; is its driver at work?"]
 
 
 def endpoints_of(node: Node, name: str, kind: EndpointKind) -> list[EndpointInfo]:

@@ -292,7 +292,7 @@ def test_an_episode_is_exported_once_its_recorder_was_killed(tmp_path: Path) -> 
 # A running robot
 
 
-async def checked(made: Contract, *, steps: int = 30) -> Any:
+async def checked(made: Contract, *, steps: int = 30, length_sec: float = 0.3) -> Any:
     """Check a robot that runs with a contract; the check ends when the robot has stepped."""
     clock = ManualClock(Time(nanoseconds=START_NS))
     async with local_context(clock=clock) as context:
@@ -302,11 +302,11 @@ async def checked(made: Contract, *, steps: int = 30) -> Any:
             Node("checker", context=context) as node,
             asyncio.TaskGroup() as tasks,
         ):
-            checking = tasks.create_task(check(node, made, 0.3))
+            checking = tasks.create_task(check(node, made, length_sec))
             await settle()
             await robot.step(steps)
             assert not checking.done()
-            await clock.advance(0.3)
+            await clock.advance(length_sec)
         return checking.result()
 
 
@@ -352,3 +352,12 @@ async def test_a_check_names_a_camera_of_another_rate() -> None:
     """Its pictures would be played too fast."""
     found = await checked(stamped(fps=50))
     assert found.problems == ["/camera0: 30.0 Hz, and fps is 50; set the camera's rate, or fps"]
+
+
+async def test_a_check_names_what_fell_silent() -> None:
+    """A robot that froze or was killed meanwhile has good rates up to then."""
+    found = await checked(stamped(), length_sec=3.0)
+    assert found.problems == [
+        "/camera0: silent for the last 3.0 s; is its driver at work?",
+        "/joint_states: silent for the last 3.0 s; is its driver at work?",
+    ]
