@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from contextlib import suppress
+from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.errors import AionodeError
@@ -14,7 +15,7 @@ from aionode.graph import EndpointKind
 from aionode.message import DEFAULT, Message, Sequence, ServiceType
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterable
 
     from aionode.gateway.session.motions import Motions
     from aionode.gateway.session.robot import Robot
@@ -33,6 +34,12 @@ MOST_GATEWAYS: Final = 100
 
 MOST_NAME: Final = 200
 """The longest name of a client that is looked for, in characters."""
+
+MOST_TOLD: Final = 100
+"""The most motions that are taken from the answer of another gateway, of each kind."""
+
+MOST_TEXT: Final = 300
+"""The longest name that is taken from such an answer, in characters."""
 
 
 class StopMotion(ServiceType, typename="aionode_gateway/srv/StopMotion"):
@@ -97,7 +104,8 @@ class Stopping:
     async def everywhere(self, rights: Rights) -> Stopped:
         """End what a client moves in the whole domain, and what others move as far as it may.
 
-        A gateway that does not answer in time is named among what still moves.
+        A gateway that does not answer in time is named among what still moves, and so is how many
+        were not asked.
         """
         others = [
             endpoint
@@ -108,10 +116,11 @@ class Stopping:
         answers = await asyncio.gather(
             self.here(rights), *(self._ask(each, rights) for each in others[:MOST_GATEWAYS])
         )
-        return Stopped(
-            set().union(*(each.ended for each in answers)),
-            set().union(*(each.moving for each in answers)),
-        )
+        ended = set().union(*(each.ended for each in answers))
+        moving = set().union(*(each.moving for each in answers))
+        if left := len(others[MOST_GATEWAYS:]):
+            moving.add(Moving("unknown", f"{left} more gateways were not asked"))
+        return Stopped(ended, moving)
 
     async def here(self, rights: Rights) -> Stopped:
         """End what a client moves by this gateway, and what others move as far as it may."""
@@ -172,10 +181,12 @@ class Stopping:
             return Stopped(set(), {Moving("unknown", f"{node} does not answer")})
         finally:
             client.destroy()
-        return Stopped(
-            {Moving(*each) for each in zip(response.ended, response.ended_of, strict=False)},
-            {Moving(*each) for each in zip(response.moving, response.moving_of, strict=False)},
-        )
+        ended = told(response.ended, response.ended_of)
+        moving = told(response.moving, response.moving_of)
+        if max(len(response.ended), len(response.moving)) > MOST_TOLD:
+            node = other.node.fully_qualified_name
+            moving.add(Moving("unknown", f"{node} names more than {MOST_TOLD}"))
+        return Stopped(ended, moving)
 
     async def _serve(
         self, request: StopMotion.Request, response: StopMotion.Response
@@ -193,6 +204,12 @@ class Stopping:
         response.moving = [name for name, _ in stopped.moving]
         response.moving_of = [who for _, who in stopped.moving]
         return response
+
+
+def told(names: Iterable[str], clients: Iterable[str]) -> set[Moving]:
+    """Return what another gateway names, which anyone can pose as: bounded in number and length."""
+    pairs = islice(zip(names, clients, strict=False), MOST_TOLD)
+    return {Moving(name[:MOST_TEXT], who[:MOST_TEXT]) for name, who in pairs}
 
 
 async def cancelled(handle: Any) -> Any:

@@ -67,7 +67,11 @@ async def test_a_cancel_ends_it(assisted: Bench, era: str, what: str) -> None:
 
 @pytest.mark.parametrize("what", MOVING)
 async def test_a_timeout_of_the_client_ends_it(assisted: Bench, era: str, what: str) -> None:
-    """A client that no longer waits would not stop the robot either."""
+    """A client that no longer waits would not stop the robot either.
+
+    With a lease that does not end the motion first when this computer is busy.
+    """
+    assisted.clients.use_policy(Policy.parse(POLICY.replace("ttl_sec = 0.3", "ttl_sec = 60.0")))
     client = await assisted.connect(era)
     tool, arguments = MOVING[what]
     async with asyncio.TaskGroup() as tasks:
@@ -292,6 +296,57 @@ async def test_a_gateway_that_does_not_answer_is_named(
     assert stopped.structured_content == {
         "ended": [], "still_moving": [{"name": "unknown", "who": "/base does not answer"}],
     }  # fmt: skip
+
+
+async def test_a_gateway_that_names_too_much_is_cut_short(assisted: Bench) -> None:
+    """Anyone in the domain can offer the service; the answer for a model remains small."""
+    assisted.base.create_service(StopMotion, "/liar/_stop", boasting)
+    await settle()
+    client = await assisted.connect()
+
+    stopped = await client.call_tool("stop", {})
+
+    first = stopped.structured_content["still_moving"][0]
+    assert first == {"name": "unknown", "who": "/base names more than 100"}
+
+
+def test_what_another_gateway_names_is_bounded() -> None:
+    """In number and in length."""
+    named = _stopping.told(
+        [f"/{number}{'x' * 1000}" for number in range(1000)], ["y" * 1000] * 1000
+    )
+
+    assert len(named) == _stopping.MOST_TOLD
+    assert {len(text) for each in named for text in each} == {_stopping.MOST_TEXT}
+
+
+async def boasting(_request: Any, response: Any) -> Any:
+    """Name a thousand motions, with long names."""
+    response.moving = [f"/{number}{'x' * 1000}" for number in range(1000)]
+    response.moving_of = ["y" * 1000] * 1000
+    return response
+
+
+async def test_gateways_that_were_not_asked_are_counted(
+    assisted: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody concludes that nothing moves by them."""
+    monkeypatch.setattr(_stopping, "MOST_GATEWAYS", 1)
+    for number in range(3):
+        assisted.base.create_service(StopMotion, f"/many/_stop_{number}", silent)
+    await settle()
+    client = await assisted.connect()
+
+    stopped = await client.call_tool("stop", {})
+
+    assert stopped.structured_content["still_moving"] == [
+        {"name": "unknown", "who": "2 more gateways were not asked"}
+    ]
+
+
+async def silent(_request: Any, response: Any) -> Any:
+    """Name nothing."""
+    return response
 
 
 async def never(_request: Any, _response: Any) -> Any:

@@ -365,6 +365,8 @@ async def stop(call: Call, _given: Nothing) -> types.CallToolResult:
     """End the client's own motion, and the motion of others as far as the policy allows."""
     stopped = await call.clients.stopping.everywhere(call.session.rights)
     ended = sorted(f"{name} ({who})" for name, who in stopped.ended)
-    moving = [{"name": name, "who": who} for name, who in sorted(stopped.moving)]
+    # What is unknown comes first: a long list is cut short.
+    in_order = sorted(stopped.moving, key=lambda each: (each.name != "unknown", each))
+    moving = [{"name": name, "who": who} for name, who in in_order]
     call.outcome = f"ended {len(ended)}, {len(moving)} go on"
     return answer({"ended": ended, "still_moving": moving})
