@@ -108,8 +108,11 @@ async def raw_call(gateway: object, tool: str, arguments: dict[str, Any]) -> Asy
                "mcp-protocol-version": "2025-11-25"}  # fmt: skip
         await client.post(address, json=request("notifications/initialized", None), headers=own)
         called = request("tools/call", 2, name=tool, arguments=arguments)
-        async with client.stream("POST", address, json=called, headers=own):
+        # Its headers come with its first event, so nothing is known of it here.
+        async with asyncio.TaskGroup() as tasks:
+            calling = tasks.create_task(client.post(address, json=called, headers=own))
             yield
+            calling.cancel()
 
 
 @pytest.mark.parametrize("what", MOVING)
