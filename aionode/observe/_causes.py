@@ -41,11 +41,12 @@ MOST_DRAWN: Final = 2 * MOST_ENTRIES
 """How many things that were sent a tree shows with their causes, at most."""
 
 Unknown: TypeAlias = Literal[
-    "", "no aionode", "older", "silent", "not kept", "forgotten", "above", "too far", "hidden"
-]
+    "", "no aionode", "older", "silent", "not kept", "not sent", "forgotten", "above", "too far",
+    "hidden",
+]  # fmt: skip
 """Why the causes of something are not known: its process is none of aionode's, is too old, does not
-answer, or keeps none; it was too long ago; they are shown above; the chain is too long; who asks
-may not see it. Empty if they are known.
+answer, keeps none, or has sent nothing yet; it was too long ago; they are shown above; the chain is
+too long; who asks may not see it. Empty if they are known.
 """
 
 
@@ -294,13 +295,13 @@ class Findings:
             unknown=self._reason(senders[0].participant) if senders else "forgotten",
         )
 
-    def _reason(self, participant: str) -> Unknown:
-        """Return why a context has not told the causes of what it has sent."""
+    def _reason(self, participant: str, kept: Unknown = "forgotten") -> Unknown:
+        """Return why a context told no causes of something; `kept` if it keeps them."""
         reasons: tuple[tuple[Unknown, Iterable[str]], ...] = (
             ("not kept", self.found.not_kept),
             ("silent", self.found.silent),
             ("older", (*self.found.older, *self.found.unreadable)),
-            ("forgotten", self.offsets),
+            (kept, self.offsets),
         )
         return next((reason for reason, those in reasons if participant in those), "no aionode")
 
@@ -314,7 +315,7 @@ class Findings:
         return [
             Caused(
                 kinds[each.kind], each.name, each.node, each.gid.hex(), 0,
-                None, unknown=self._reason(each.participant),
+                None, unknown=self._reason(each.participant, "not sent"),
             )
             for each in self.senders.values()
             if each.name == full and each.kind in kinds and not is_hidden(
@@ -365,7 +366,9 @@ class Inquiry(Findings):
     def _keep(self, report: CauseReport) -> None:
         self.note(report, 0 if report.clock == clock_id() else perf_ns() - report.now_ns)
         for entry in report.sent:
-            self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
+            sender = None if entry.kind == "response" else self.senders.get(entry.gid)
+            if sender is None or sender.participant == report.participant:
+                self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
 
     def missing(self) -> dict[Key, list[str]]:
         """Return what came before and was not asked for, with the contexts that may know."""

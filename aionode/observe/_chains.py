@@ -18,6 +18,7 @@ UNKNOWN: Final[dict[Unknown, str]] = {
     "older": "an older aionode",
     "silent": "does not answer",
     "not kept": "keeps no causes",
+    "not sent": "has sent nothing yet",
     "forgotten": "no longer kept",
     "above": "see above",
     "too far": "and so on",

@@ -218,10 +218,16 @@ async def test_commands_that_stop_coming_are_followed_by_the_stop(aionode_contex
     """A script that is killed, or a cable that is cut: nobody has to report it."""
     async with robot_and_client(aionode_context, COMMANDS) as (robot, client):
         for _ in range(2):  # each request is a session of its own, but there is one holder
-            answer = await client.post("/topics/cmd_vel", json=TWIST)
+            while is_too_old(answer := await client.post("/topics/cmd_vel", json=TWIST)):
+                pass  # this computer was too busy, and the answer says to send it again
             assert answer.status_code == 204
         while (await anext(robot.commands)).linear.x:
             pass
+
+
+def is_too_old(answer: httpx.Response) -> bool:
+    """Return whether a command was refused because it may have waited in a stalled gateway."""
+    return answer.status_code == 409 and answer.json()["code"] == "too_old"
 
 
 async def test_a_topic_that_another_client_commands_is_held(aionode_context: Context) -> None:

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from aionode import Context, Node
 from aionode.engine.observation import decoded, encoded
 from aionode.engine.transport.local import LocalTransport
+from aionode.engine.transport.zenoh.discovery import observed
 from aionode.graph import NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.observe import Snapshot, observe, rates
@@ -125,6 +126,21 @@ def test_a_report_that_is_none_is_refused(data: bytes) -> None:
     report = decoded(data)
 
     assert report is None or encoded(report)
+
+
+async def test_an_answer_that_is_too_large_counts_as_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However much the contexts of a network say, the asker keeps a bounded part of it."""
+    monkeypatch.setattr(observed, "MOST_BYTES", observed.ANSWER_BYTES)
+    async with two_contexts() as (one, other):
+        robot = quiet_node("robot", one)
+        tool = quiet_node("tool", other)
+        async with robot, tool:
+            await tool.graph.until(lambda: len(tool.graph.nodes()) == 2)
+
+            found = await observe(tool)
+
+    assert [process.participant for process in found.processes] == [other.participant]
+    assert "/robot" in str(found.silent | found.older)
 
 
 async def test_contexts_answer_each_other_over_the_network() -> None:

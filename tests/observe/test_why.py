@@ -13,7 +13,7 @@ from aionode import ActionClient, ActionServer, Context, Node
 from aionode._process.concurrency import checkpoint
 from aionode.action import CancelResponse
 from aionode.engine.cause_reports import CauseQuestion, answer, encoded
-from aionode.engine.causes import CauseLog
+from aionode.engine.causes import CauseLog, Party
 from aionode.graph import NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -470,6 +470,34 @@ async def test_who_keeps_no_causes_is_named_with_the_remedy() -> None:
         "/out (robot, keeps no causes)",
         "/robot: no causes are kept: start it with AIONODE_CAUSES=1, or with Context(causes=True)",
     ]
+
+
+async def test_a_publisher_that_has_sent_nothing_is_told_of_as_such() -> None:
+    """What it sends is kept however old it is, so nothing can have been forgotten."""
+    async with robot() as node:
+        node.create_publisher(Int32, "out", 10)
+        found = await why(node, "out")
+
+    assert to_chains(found) == "/out (robot, has sent nothing yet)"
+
+
+async def test_nobody_tells_what_another_has_sent() -> None:
+    """A context that lies could replace what is true."""
+    log = CauseLog()
+    transport = Answering({})
+    async with (
+        Context(transport=transport, causes=True) as context,
+        Node("robot", context=context) as node,
+    ):
+        publisher = node.create_publisher(Int32, "out", 10)
+        log.note("message", Party("publisher", "/liar", "/out", publisher._endpoint.gid), 1)
+        lie = encoded(answer(log, "d4", CauseQuestion("/out")))
+        transport.answers["d4"] = lie
+        node.graph.add_node(NodeInfo("d4", 1, "liar", "/"))
+        publisher.publish(Int32())
+        found = await why(node, "out")
+
+    assert [each.node for each in found.sent] == ["/robot"]
 
 
 async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:

@@ -33,6 +33,12 @@ LINKS: Final = "links"
 OLDER_S: Final = 0.2
 """Time for which those that have sent no report are asked whether they are there, in seconds."""
 
+MOST_BYTES: Final = 64 << 20
+"""What is kept of all answers to one question, in bytes."""
+
+ANSWER_BYTES: Final = 1000
+"""What an answer costs beside its payload, in bytes."""
+
 
 class Observed:
     """Answers tools of other processes, and asks them; does nothing before somebody asks.
@@ -128,14 +134,17 @@ class Observed:
     async def _answers(
         self, session: zenoh.Session, key: str, timeout_s: float, question: bytes
     ) -> dict[str, bytes]:
-        """Return what each context answers on one key."""
+        """Return what each context answers on one key; what is too much counts as no answer."""
         found: dict[str, bytes] = {}
+        room = MOST_BYTES
         ended = asyncio.Event()
 
         def take(reply: zenoh.Reply | None) -> None:
+            nonlocal room
             if reply is None:
                 ended.set()
-            elif reply.ok is not None:
+            elif reply.ok is not None and len(reply.ok.payload) + ANSWER_BYTES <= room:
+                room -= len(reply.ok.payload) + ANSWER_BYTES
                 participant = str(reply.ok.key_expr)[len(self._prefix) :].partition("/")[0]
                 found[participant] = reply.ok.payload.to_bytes()
 
