@@ -362,6 +362,11 @@ async def test_meshes_are_read(node: Node) -> None:
             )
             return found
 
+        async def failure(name: str, text: str) -> str:
+            with pytest.raises(AssertionError) as failed:
+                await corners(name, text)
+            return str(failed.value)
+
         assert await corners("a.STL", stl) == [0, 0, 0, 1, 0, 0, 0, 1, 0]
         assert len(await corners("a.obj", obj)) == 18
         assert await corners("a.dae", DAE) == pytest.approx([0, 0, 0.2, 0.1, 0, 0.2, 0, 0.1, 0.2])
@@ -369,6 +374,12 @@ async def test_meshes_are_read(node: Node) -> None:
         assert await corners("a.dae", upright) == pytest.approx(
             [0, -0.2, 0, 0.1, -0.2, 0, 0, -0.2, 0.1]
         )
+        doubling = ""  # a trillion nodes
+        for deep in range(40):
+            inner = f'<instance_node url="#n{deep + 1}"/>' * 2
+            doubling += f'<node id="n{deep}">{inner}</node>'
+        many = f"<COLLADA><visual_scene>{doubling}</visual_scene></COLLADA>"
+        assert "more than 10000 nodes" in await failure("a.dae", many)
         for name, text in {"a.stl": "x", "a.dae": "<x", "a.obj": "f 1 2 3", "a.glb": ""}.items():
             with pytest.raises(AssertionError):
                 await corners(name, text)

@@ -3,6 +3,7 @@
 
 const ROUND = 24; // faces around a cylinder
 const MOST_TRIANGLES = 1e6;
+const MOST_NODES = 10000; // of a COLLADA scene, each as often as it is used
 
 export function box([length, width, height]) {
   const [x, y, z] = [length / 2, width / 2, height / 2];
@@ -104,8 +105,10 @@ function collada(text) {
   const upright = up === "Z_UP" ? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0] : [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0];
   const byId = new Map([...tree.querySelectorAll("[id]")].map((each) => [`#${each.id}`, each]));
   const faces = [];
+  let nodes = 0;
   const visit = (node, outer, deep) => {
     if (deep > 50) throw new Error("its nodes contain each other");
+    if (++nodes > MOST_NODES) throw new Error(`it has more than ${MOST_NODES} nodes`);
     let here = outer;
     for (const child of node.children) {
       const inner = TRANSFORMS[child.tagName]?.(numbersOf(child));
