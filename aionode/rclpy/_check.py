@@ -139,13 +139,13 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
 def report_on(file: Path) -> Report:
     """Report the imports of one file."""
     try:
-        tree = ast.parse(file.read_bytes(), str(file))
-    except (OSError, SyntaxError, ValueError) as error:
+        imports = imports_of(ast.parse(file.read_bytes(), str(file)))
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError) as error:
         return Report([f"  cannot be read: {error}"], is_complete=False)
     listed: dict[str, str] = {}
     missing: set[Import] = set()
     report = Report([])
-    for wanted in imports_of(tree):
+    for wanted in imports:
         if is_in_python(wanted.module):
             continue
         optional = wanted.optional or any(missing.isdisjoint(first) for first in wanted.instead_of)
@@ -201,10 +201,8 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
                 Import(module, "" if alias.name == "*" else alias.name, optional=optional)
                 for alias in node.names
             )
-        case ast.Call(func=called, args=[ast.Constant(value=str(module)), *_]) if ast.unparse(
-            called
-        ).rpartition(".")[2] in {"import_module", "__import__"}:
-            yield Import(module, optional=optional)
+        case ast.expr():
+            yield from by_function(node, optional=optional)
         case ast.If():
             for statement in taken(node):
                 yield from imported(statement, optional=optional)
@@ -216,6 +214,21 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
         case _:
             for part in ast.iter_child_nodes(node):
                 yield from imported(part, optional=optional)
+
+
+def by_function(node: ast.expr, *, optional: bool) -> Iterator[Import]:
+    """Yield the imports by calls such as `import_module` in an expression.
+
+    An expression is walked without recursion: a sum of a thousand terms is that deep.
+    """
+    for part in ast.walk(node):
+        match part:
+            case ast.Call(
+                func=ast.Name(id="import_module" | "__import__")
+                | ast.Attribute(attr="import_module" | "__import__"),
+                args=[ast.Constant(value=str(module)), *_],
+            ):
+                yield Import(module, optional=optional)
 
 
 def tried(node: ast.Try, *, optional: bool) -> Iterator[Import]:

@@ -299,6 +299,28 @@ def test_what_does_not_happen_here_is_not_missed(program: Path, source: str) -> 
     assert complete
 
 
+@pytest.mark.parametrize(
+    "source",
+    ["total = 0" + " + 1" * 1500 + "\n", "built = make()" + ".part()" * 900 + "\n"],
+    ids=["a long sum", "a long chain of calls"],
+)
+def test_an_expression_may_be_deeply_nested(program: Path, source: str) -> None:
+    """As in generated tables; a traceback is no answer."""
+    assert findings(program, source + "import nothing_a\n") == ({"nothing_a": "missing"}, False)
+
+
+def test_a_program_nested_deeper_than_python_recurses_is_said_to_be_unreadable(
+    program: Path,
+) -> None:
+    """It is the file's fault, so the others of a folder are still examined."""
+    program.write_text("if a == 0:\n    pass\n" + "elif a == 1:\n    pass\n" * 1500)
+
+    text, complete = check([str(program)])
+
+    assert "cannot be read: " in text
+    assert not complete
+
+
 def test_a_compiled_module_beside_the_program_is_there(program: Path) -> None:
     """It has no source that could be examined."""
     (program.parent / f"fast{EXTENSION_SUFFIXES[0]}").write_bytes(b"\0")
