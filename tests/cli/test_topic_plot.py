@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -125,6 +126,21 @@ async def test_a_text_is_no_number(
 
     with pytest.raises(CommandError, match="name a number"):
         await asyncio.gather(plot(tool, ["/text.data"], output=screen.output), talk())
+
+
+async def test_an_array_is_no_number(
+    node_factory: Callable[..., Node], tool: Node, screen: Any
+) -> None:
+    """Although those of NumPy have `__float__`, which fails unless there is one element."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = node_factory("laser").create_publisher(LaserScan, "/scan", latched)
+
+    async def measure() -> None:
+        await publisher.wait_for_subscribers(1)
+        publisher.publish(LaserScan(ranges=[1.0, 2.0]))
+
+    with pytest.raises(CommandError, match=re.escape("float32[] is no number; name a number")):
+        await asyncio.gather(plot(tool, ["/scan.ranges"], output=screen.output), measure())
 
 
 @pytest.fixture

@@ -126,7 +126,7 @@ class Number:
             CommandError: it has no such field, or the field is no number.
         """
         value, type_ = field_of(msg, self.path)
-        if isinstance(value, str | bytes) or not hasattr(value, "__float__"):
+        if hasattr(value, "__len__") or not hasattr(value, "__float__"):  # an array may have both
             raise CommandError(
                 f"Invalid field '{self.path}': {type_ or self.topic} is no number; name a number"
                 " in it, such as twist.linear.x or ranges[0]"
