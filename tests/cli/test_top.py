@@ -114,6 +114,18 @@ async def test_the_log_is_subscribed_to_when_it_is_looked_at(robot: Node) -> Non
     assert after.count(Log) == 1
 
 
+@pytest.mark.parametrize("before", [[], ["slash", "x"]], ids=["a table", "typing a filter"])
+async def test_ctrl_c_ends_the_view(tool: Node, before: list[str]) -> None:
+    """As it ends every other command; Textual's own binding only names another key."""
+    app = TopApp(tool)
+
+    async with app.run_test() as pilot:
+        await pilot.press(*before, "ctrl+c")
+
+    assert app.return_code == 0
+    assert not app.is_running
+
+
 async def test_what_nodes_say_of_themselves_is_a_table(robot: Node) -> None:
     """It is subscribed to when it is looked at; the worst is first."""
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

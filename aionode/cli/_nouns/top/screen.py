@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from rich.text import Text
 from textual.app import App, ComposeResult
+from textual.binding import Binding
 from textual.widgets import (
     DataTable,
     Footer,
@@ -70,6 +71,7 @@ class TopApp(App[None]):
     TITLE = "aionode top"
     BINDINGS: ClassVar[list[Any]] = [
         ("q", "quit", "quit"),
+        Binding("ctrl+c", "quit", show=False, priority=True),  # Textual's own only names a key
         ("/", "filter", "filter"),
         ("s", "sort", "sort by the next column"),
         ("r", "reverse", "other way round"),
