@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from aionode import DurabilityPolicy, QoSProfile, Time, bag
 from aionode.cli._nouns.topic.plot import plot
+from aionode.cli._support import braille
 from aionode.cli._support.braille import Line, chart
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist
@@ -141,6 +142,7 @@ async def test_an_array_is_no_number(
 
     with pytest.raises(CommandError, match=re.escape("float32[] is no number; name a number")):
         await asyncio.gather(plot(tool, ["/scan.ranges"], output=screen.output), measure())
+    assert screen.errors == ""  # one has arrived
 
 
 @pytest.fixture
@@ -211,3 +213,25 @@ def test_a_line_rises_from_the_lower_left_to_the_upper_right() -> None:
     assert ink[0][-1] == 9
     assert ink[-1][0] == 0
     assert all(ink)
+
+
+@given(
+    values=st.lists(st.floats(width=32), min_size=1, max_size=300), keep_ns=st.none() | st.just(50)
+)
+def test_a_long_line_keeps_its_extremes_and_its_end(
+    values: list[float], keep_ns: int | None
+) -> None:
+    """A recording is shown whole however long it is, in bounded memory."""
+    line = Line("name", keep_ns)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(braille, "MOST_POINTS", 16)
+        for time_ns, value in enumerate(values):
+            line.add(time_ns, value)
+            assert len(line.points) <= 16
+
+    shown = values if keep_ns is None else values[-keep_ns - 1 :]
+    finite = [value for value in shown if math.isfinite(value)]
+    kept = [value for _, value in line.points]
+    assert list(line.points) == sorted(line.points, key=lambda point: point[0])
+    assert repr(kept[-1]) == repr(values[-1])
+    assert not finite or {min(finite), max(finite)} <= set(kept)

@@ -6,6 +6,7 @@ import math
 import sys
 from collections import deque
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -13,8 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["COLOURS", "Line", "chart"]
 
-MOST_POINTS: Final = 200_000
-"""The most points of a line that are kept; the oldest are dropped first."""
+MOST_POINTS: Final = 10_000
+"""The most points of a line that are kept; then each four become their lowest and highest."""
 
 COLOURS: Final = ("blue", "red", "green", "yellow", "magenta", "cyan")
 """The colours of lines, in their order; rich's names."""
@@ -36,15 +37,50 @@ class Line:
 
     Attributes:
         name: Its name in the legend.
+        keep_ns: How long values are kept, in nanoseconds; None for all of them.
         points: Times in nanoseconds, and values; a value that is not finite is a gap.
     """
 
     name: str
-    points: deque[tuple[int, float]] = field(default_factory=lambda: deque(maxlen=MOST_POINTS))
+    keep_ns: int | None = None
+    points: deque[tuple[int, float]] = field(default_factory=deque)
+
+    def add(self, time_ns: int, value: float) -> None:
+        """Add a value; after a time that went backwards, as when a bag begins again, begin anew."""
+        points = self.points
+        if points and time_ns < points[-1][0]:
+            points.clear()
+        points.append((time_ns, value))
+        if self.keep_ns is not None:
+            while points[0][0] < time_ns - self.keep_ns:
+                points.popleft()
+        if len(points) > MOST_POINTS:
+            self.points = thinned(points)
 
     def between(self, start_ns: int, end_ns: int) -> list[tuple[int, float]]:
         """Return the points of a time."""
         return [point for point in self.points if start_ns <= point[0] <= end_ns]
+
+
+def thinned(points: deque[tuple[int, float]]) -> deque[tuple[int, float]]:
+    """Return about half of the points, which look the same: of each four the lowest and highest."""
+    newest = points.pop()
+    kept: deque[tuple[int, float]] = deque()
+    waiting = iter(points)
+    while group := list(islice(waiting, 4)):
+        gaps = [point for point in group if not math.isfinite(point[1])]
+        finite = [point for point in group if math.isfinite(point[1])]
+        of_group = gaps[:1]
+        if finite:
+            of_group += [min(finite, key=value_of), max(finite, key=value_of)]
+        kept.extend(sorted(set(of_group)))
+    kept.append(newest)
+    return kept
+
+
+def value_of(point: tuple[int, float]) -> float:
+    """Return the value of a point."""
+    return point[1]
 
 
 def chart(

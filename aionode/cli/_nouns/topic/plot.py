@@ -87,14 +87,19 @@ async def plot(
     if png is not None:
         check_picture(png)
     wanted = dict.fromkeys(fields)
-    numbers = [Number(node, text) for text in wanted]
+    is_all = bag_path is not None
+    keep_ns = None if is_all or png is not None else int(window * 1e9)
+    numbers = [Number(node, text, keep_ns) for text in wanted]
+    end = partial(finish, [number.line for number in numbers], output, window, png, is_all=is_all)
     try:
         if bag_path is not None:
             read_bag(bag_path, numbers, output)
         else:
             await follow(node, numbers, output, window, duration)
-    finally:  # Ctrl-C is one way to end
-        finish([number.line for number in numbers], output, window, png, is_all=bool(bag_path))
+    except asyncio.CancelledError:  # Ctrl-C is one way to end
+        end()
+        raise
+    end()
 
 
 class Number:
@@ -103,6 +108,7 @@ class Number:
     Args:
         node: The command's node, which resolves the name.
         text: The topic and the field, as ``/odom.pose.pose.position.x``.
+        keep_ns: How long its values are kept, in nanoseconds; None for all of them.
 
     Attributes:
         topic: The full name of the topic.
@@ -110,14 +116,14 @@ class Number:
         line: Its values over time.
     """
 
-    def __init__(self, node: Node, text: str) -> None:
+    def __init__(self, node: Node, text: str, keep_ns: int | None) -> None:
         topic, dot, self.path = text.partition(".")
         if not dot or not topic or not self.path:
             raise CommandError(
                 f"Invalid field '{text}': give topic and field, as /odom.twist.twist.linear.x"
             )
         self.topic = node.resolve_topic_name(topic)
-        self.line = Line(f"{self.topic}.{self.path}")
+        self.line = Line(f"{self.topic}.{self.path}", keep_ns)
 
     def add(self, msg: Any, time_ns: int, output: Output) -> None:
         """Add the value of a message.
@@ -132,10 +138,7 @@ class Number:
                 " in it, such as twist.linear.x or ranges[0]"
             )
         number = float(value)
-        points = self.line.points
-        if points and time_ns < points[-1][0]:  # time went backwards, as when a bag begins again
-            points.clear()
-        points.append((time_ns, number))
+        self.line.add(time_ns, number)
         if output.json:
             record = {"time_ns": time_ns, "topic": self.topic, "field": self.path, "value": number}
             output.item("", record)
