@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode import DurabilityPolicy, QoSProfile, Time, bag
+from aionode.cli._nouns.topic.measure import QOS
 from aionode.cli._nouns.topic.plot import plot
 from aionode.cli._support import braille
 from aionode.cli._support.braille import Line, chart
@@ -112,6 +113,20 @@ async def test_what_cannot_be_plotted_is_named(
     """With the valid options."""
     with pytest.raises(CommandError, match=problem):
         await asyncio.gather(plot(tool, [field], output=screen.output), manual_clock.advance(1.0))
+
+
+async def test_messages_that_are_not_drawn_are_counted(
+    wheels: Node, tool: Node, manual_clock: ManualClock, running: Any, screen: Any
+) -> None:
+    """A topic may be faster than the terminal."""
+    fast = wheels.create_publisher(Float64, "/fast", 10)
+    async with running(plot(tool, ["/fast.data"], output=screen.output)):
+        await fast.wait_for_subscribers(1)
+        for number in range(QOS.depth + 7):
+            fast.publish(Float64(data=float(number)))
+        await manual_clock.advance(0.1)
+
+    assert "7 messages arrived too fast to be drawn" in screen.errors
 
 
 async def test_a_text_is_no_number(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import shutil
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from aionode.cli._support.output import Output
-    from aionode.endpoints.subscription import MessageInfo
+    from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.node import Node
 
 __all__ = ["plot", "plotting"]
@@ -149,6 +149,7 @@ async def follow(
 ) -> None:
     """Draw numbers as they arrive, until the time is over."""
     follower = Follower(node)
+    subscriptions: list[Subscription[Any]] = []
     by_topic: dict[str, list[Number]] = {}
     for number in numbers:
         by_topic.setdefault(number.topic, []).append(number)
@@ -163,7 +164,7 @@ async def follow(
         for number in own:
             if "[" not in number.path:  # an array of a message that nobody has sent is empty
                 field_of(msg_type(), number.path)
-        follower.follow(msg_type, topic, partial(on_message, own), QOS)
+        subscriptions.append(follower.follow(msg_type, topic, partial(on_message, own), QOS))
 
     lines = [number.line for number in numbers]
     with output.live() if output.is_terminal else nullcontext() as update:
@@ -174,12 +175,23 @@ async def follow(
                 update(partial(picture, lines, window, end_ns))
 
             node.create_timer(REDRAW_S, redraw, on_error=follower.fail)
-        with suppress(TimeoutError):
+        try:
             async with asyncio.timeout(duration):
                 # Concurrently: a topic without a publisher must not hold up the others.
                 await asyncio.gather(
                     follower.finished(), *(subscribe(*each) for each in by_topic.items())
                 )
+        except TimeoutError:
+            pass
+        finally:
+            warn_of_dropped(subscriptions, output)
+
+
+def warn_of_dropped(subscriptions: Sequence[Subscription[Any]], output: Output) -> None:
+    """Say how many messages were not drawn, if any."""
+    dropped = sum(subscription.stats.dropped for subscription in subscriptions)
+    if dropped:
+        output.warn(f"{dropped} messages arrived too fast to be drawn")
 
 
 def picture(lines: Sequence[Line], window: float, end_ns: int, width: int) -> list[tuple[str, str]]:
