@@ -55,7 +55,7 @@ def texts(path: Path, **limits: Any) -> list[str]:
 rows = st.lists(
     st.tuples(
         st.sampled_from(["/a", "/b", "/c"]),
-        st.integers(0, 2**62),
+        st.one_of(st.integers(0, 2), st.integers(0, 2**62)),
         st.integers(0, 2**62),
         st.integers(0, 2**32 - 1),
         st.one_of(
@@ -76,14 +76,16 @@ rows = st.lists(
 def test_all_readers_get_the_messages_that_were_written(
     rows: list[Row], compression: str, split: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Foxglove and other programs read files of bags by libraries of their own."""
+    """Foxglove and other programs read files of bags by libraries of their own.
+
+    We yield messages by time, and those of one time as they were written, across chunks and files.
+    """
     path = tmp_path_factory.mktemp("bags") / "run"
     write(path, rows, compression=compression, max_messages=split)
     with bag.open(path) as run:
         ours = [(r.topic, r.time_ns, r.publish_time_ns, r.sequence, r.raw) for r in run.read()]
         assert run.message_count == len(rows)
-    assert ours == sorted(ours, key=lambda row: row[1])
-    assert sorted(ours) == sorted(rows)
+    assert ours == sorted(rows, key=lambda row: row[1])
     theirs: list[Row] = []
     for file in sorted(path.glob("*.mcap")):
         with file.open("rb") as stream:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-from itertools import count
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -17,7 +16,8 @@ __all__ = ["in_order"]
 def in_order(streams: list[tuple[int, Iterator[Record]]]) -> Iterator[Record]:
     """Yield the records of several streams in time order.
 
-    A stream is read only once its start time is reached, so that few files are in use at a time.
+    Records of one time come in the order of their streams. A stream is read only once its
+    start time is reached, so that few files are in use at a time.
 
     Args:
         streams: Streams that are each in order, with a time before which they have no record.
@@ -25,15 +25,16 @@ def in_order(streams: list[tuple[int, Iterator[Record]]]) -> Iterator[Record]:
     if len(streams) == 1:
         yield from streams[0][1]
         return
-    waiting = sorted(streams, key=lambda stream: stream[0], reverse=True)
-    numbers = count()
+    starts = sorted((start, number) for number, (start, _) in enumerate(streams))
+    waiting = starts[::-1]  # the next one to be read is last
     heads: list[tuple[int, int, Record, Iterator[Record]]] = []
     while waiting or heads:
         while waiting and (not heads or waiting[-1][0] <= heads[0][0]):
-            _, stream = waiting.pop()
+            _, number = waiting.pop()
+            stream = streams[number][1]
             first = next(stream, None)
             if first is not None:
-                heapq.heappush(heads, (first.time_ns, next(numbers), first, stream))
+                heapq.heappush(heads, (first.time_ns, number, first, stream))
         if not heads:
             continue
         _, number, record, stream = heads[0]
