@@ -159,10 +159,12 @@ async def test_contexts_answer_each_other_over_the_network() -> None:
     assert (found.silent, found.older, found.unreadable) == ({}, {}, {})
 
 
+@pytest.mark.parametrize("link", ["on", "off"])
 async def test_a_stopped_process_is_named_and_delays_nobody(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
-    """The report of the others is there within the time limit."""
+    """The report of the others is there within the time limit, with links or without."""
+    monkeypatch.setenv("AIONODE_LINK", link)
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     talker = start(

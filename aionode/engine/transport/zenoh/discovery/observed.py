@@ -102,7 +102,8 @@ class Observed:
         session = self._state.session
         if session is None:
             return {}
-        asked = self._peer_directory.contexts()
+        # Contexts without links have only the token of acknowledgements.
+        asked = self._peer_directory.contexts() | self._state.acknowledgements.present
         keys = [self._key("*", what)]
         if participants is not None:
             asked = set(participants)
