@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode._distribution import NO_TYPE_HASH
+from aionode.engine.causes import CAUSES
 from aionode.engine.wire.described_type import action_from_descriptions, type_from_description
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, InterfaceNotFoundError, TypeDescriptionError
@@ -151,10 +152,12 @@ async def description_of(node: NodeMethods, user: EndpointInfo) -> Any | None:
         return None
     client = node.create_client(GetTypeDescription, service)
     request = GetTypeDescription.Request(type_name=user.type_name, type_hash=user.type_hash)
+    acting_for = CAUSES.set(())  # a description causes nothing that the caller sends
     try:
         response: Any = await client.call(request, timeout_sec=ANSWER_S)
     except AionodeError:
         return None  # the caller says that no node describes the type
     finally:
+        CAUSES.reset(acting_for)
         client.destroy()
     return response.type_description if response.successful else None

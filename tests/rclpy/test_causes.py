@@ -6,9 +6,11 @@ from typing import Any
 
 import pytest
 
+import message_filters
 import rclpy
 from aionode.engine.causes import CauseLog
-from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.geometry_msgs.msg import PointStamped
+from aionode.interfaces.std_msgs.msg import Header, String
 from aionode.interfaces.std_srvs.srv import Trigger
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
@@ -84,3 +86,49 @@ def test_spun_callbacks_have_causes(
     assert {"on_tick", "on_scan", "on_ask"} <= {
         run.party.callback().rpartition(".")[2] for run in log.runs
     }
+
+
+class Pairing(Node):
+    """Publishes for each pair of messages, and remembers it."""
+
+    def __init__(self, context: rclpy.context.Context) -> None:
+        super().__init__("pairing", context=context)
+        self.done: Future[Any] = Future()
+        self.both = self.create_publisher(Header, "both", 10)
+        self.inputs = [self.create_publisher(PointStamped, name, 10) for name in ("left", "right")]
+        filters = [
+            message_filters.Subscriber(self, PointStamped, name) for name in ("left", "right")
+        ]
+        self.pairs = message_filters.TimeSynchronizer(filters, 10)
+        self.pairs.registerCallback(self.on_pair)
+        self.ticks = self.create_timer(0.01, self.on_tick)
+
+    def on_tick(self) -> None:
+        """Send both, one after the other."""
+        self.ticks.cancel()
+        for publisher in self.inputs:
+            publisher.publish(PointStamped())
+
+    def on_pair(self, left: PointStamped, _: PointStamped) -> None:
+        """Publish what both have caused."""
+        self.both.publish(left.header)
+        self.done.set_result(None)
+
+
+def test_a_pair_has_two_causes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message that completes a pair is only one of them."""
+    monkeypatch.setenv("AIONODE_CAUSES", "1")
+    context = rclpy.context.Context()
+    rclpy.init(context=context)
+    try:
+        pairing = Pairing(context)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(pairing)
+        executor.spin_until_future_complete(pairing.done, 10.0)
+        log = pairing.handle.bare.context.causes
+    finally:
+        rclpy.shutdown(context=context)
+
+    assert isinstance(log, CauseLog)
+    (sent,) = [each for each in log.sent if each.party.name == "/both"]
+    assert {run.party.name for run in sent.causes} == {"/left", "/right"}
