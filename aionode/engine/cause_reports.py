@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Annotated, Final, TypeAlias, TypeVar
 
 import msgspec
 
@@ -39,6 +39,9 @@ MOST_AT_ONCE: Final = 1000
 """How many runs, and how many entries, a context tells at once when it is asked for all."""
 
 T = TypeVar("T")
+
+Word: TypeAlias = Annotated[str, msgspec.Meta(max_length=1000)]
+"""A text of a bounded length: each thing that is kept refers to the report that tells of it."""
 
 Key = tuple[Kind, bytes, int]
 """What identifies something that was sent: its kind, gid and sequence number."""
@@ -129,11 +132,11 @@ class CauseReport(msgspec.Struct):
         next: The numbers of the next ones.
     """
 
-    participant: str
-    host: str
+    participant: Word
+    host: Word
     pid: int
-    program: str
-    clock: str
+    program: Word
+    clock: Word
     now_ns: int
     is_kept: bool
     sent: list[SentReport] = []

@@ -8,6 +8,7 @@ import msgspec
 
 from aionode.clock import perf_ns
 from aionode.engine.cause_reports import (
+    MOST_TOLD,
     CauseQuestion,
     CauseReport,
     Key,
@@ -371,10 +372,15 @@ class Inquiry(Findings):
                 self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
 
     def missing(self) -> dict[Key, list[str]]:
-        """Return what came before and was not asked for, with the contexts that may know."""
+        """Return what came before and was not asked for, with the contexts that may know.
+
+        As much as one question may ask for; the next call returns more.
+        """
         found: dict[Key, list[str]] = {}
         for entry, _ in self.sent.values():
             for run in entry.causes:
+                if len(found) == MOST_TOLD:
+                    return found
                 key = run.kind, run.gid, run.sequence
                 if key not in self.sent and key not in self._asked and run.kind != "timer":
                     owners = self._owners(run)

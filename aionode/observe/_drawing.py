@@ -37,15 +37,17 @@ def rate_of(edge: Edge) -> str:
 def to_text(picture: Picture) -> str:
     """Return a picture as lines: each node with what it does."""
     types = {(vertex.kind, vertex.name): ", ".join(vertex.types) for vertex in picture.vertices}
+    edges: dict[Key, list[Edge]] = defaultdict(list)
+    for edge in picture.edges:
+        for end in {edge.source, edge.target}:
+            edges[end].append(edge)
     lines = []
     for vertex in picture.vertices:
         if vertex.kind != "node":
             continue
         me = (vertex.kind, vertex.name)
         lines.append(f"{MARKS[vertex.change]} {vertex.name}")
-        for edge in picture.edges:
-            if me not in (edge.source, edge.target):
-                continue
+        for edge in edges[me]:
             other = edge.target if edge.source == me else edge.source
             verb = VERBS[edge.source[0], edge.target[0]]
             rate = f"  {rate_of(edge)}" if edge.hz is not None else ""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
+
+from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.engine.cause_reports import (
     CauseQuestion,
@@ -27,12 +30,15 @@ AFTER_ALL: Final = 2**60
 MOST_ANSWERS: Final = 16
 """How often one context is asked in a look: its logs, of 4096 each, are told a thousand at once."""
 
+MOST_CONTEXTS: Final = 10_000
+"""How many contexts are remembered: the commands of a day are a context each."""
+
 
 class Following:
     """What the processes have told so far.
 
     Attributes:
-        told: The latest answer of each context that keeps causes.
+        told: The latest answer of each context that keeps causes, without its runs and entries.
         offsets: From the clock of each context to this one, in nanoseconds.
         lost: How many callbacks and things sent were no longer kept when they were asked for.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
@@ -43,13 +49,13 @@ class Following:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self.told: dict[str, CauseReport] = {}
-        self.offsets: dict[str, int] = {}
+        self.told: Recent[str, CauseReport] = Recent(MOST_CONTEXTS)
+        self.offsets: Recent[str, int] = Recent(MOST_CONTEXTS)
         self.lost = 0
-        self.not_kept: dict[str, list[str]] = {}
+        self.not_kept: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
         self.silent: dict[str, list[str]] = {}
-        self.older: dict[str, list[str]] = {}
-        self.unreadable: dict[str, list[str]] = {}
+        self.older: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
+        self.unreadable: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
 
     def add(self, report: CauseReport) -> None:
         """Take an answer with what is new."""
@@ -78,9 +84,9 @@ class Following:
                     continue
                 report = decoded(data)
                 if not data:
-                    self.older[participant] = self.nodes_of(participant)
+                    self.older.put(participant, self.nodes_of(participant))
                 elif report is None or report.participant != participant:
-                    self.unreadable[participant] = self.nodes_of(participant)
+                    self.unreadable.put(participant, self.nodes_of(participant))
                 elif not report.is_kept:
                     self._keep(report)
                 else:
@@ -106,13 +112,14 @@ class Following:
     def _keep(self, report: CauseReport) -> None:
         participant = report.participant
         offset = 0 if report.clock == clock_id() else perf_ns() - report.now_ns
-        self.offsets[participant] = min(self.offsets.get(participant, offset), offset)
+        # Removed and added again: those that answered least recently are forgotten first.
+        self.offsets.put(participant, min(self.offsets.pop(participant, offset), offset))
         if not report.is_kept:
             if nodes := self.nodes_of(participant):
-                self.not_kept[participant] = nodes
+                self.not_kept.put(participant, nodes)
         else:
-            before = self.told.get(participant)
-            self.told[participant] = report
+            before = self.told.pop(participant, None)
+            self.told.put(participant, msgspec.structs.replace(report, runs=[], sent=[]))
             if before is not None:
                 # Those that a context tells again take nothing from what others have lost.
                 self.lost += max(sum(report.begin) - sum(before.next), 0)

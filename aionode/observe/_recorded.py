@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import msgspec
 
@@ -30,6 +30,12 @@ MOST_READ: Final = 100_000
 
 MOST_ENDPOINTS: Final = 20_000
 """How many endpoints, and how many contexts, are kept while a recording is read."""
+
+MOST_BYTES: Final = 128 << 20
+"""The most bytes of each kind of them, as JSON: a recording may have been written by anybody."""
+
+K = TypeVar("K")
+V = TypeVar("V")
 
 
 class CauseRecord(msgspec.Struct):
@@ -61,6 +67,37 @@ class CauseRecord(msgspec.Struct):
 RECORDS: Final = msgspec.json.Decoder(CauseRecord)
 
 
+class RecentParts(Recent[K, V]):
+    """Parts of records, of which the oldest are evicted by their number and their size.
+
+    Args:
+        most: The maximum number of keys.
+    """
+
+    __slots__ = ("_bytes", "_sizes")
+
+    def __init__(self, most: int) -> None:
+        super().__init__(most)
+        self._sizes: dict[K, int] = {}
+        self._bytes = 0
+
+    def put_part(self, key: K, value: V, part: Any) -> None:
+        """Set the value of a key, which is as large as a part of a record."""
+        if key not in self and len(self) == self._most:
+            self._evict()
+        size = len(msgspec.json.encode(part))
+        self._bytes += size - self._sizes.get(key, 0)
+        self._sizes[key] = size
+        self[key] = value
+        while self._bytes > MOST_BYTES:
+            self._evict()
+
+    def _evict(self) -> None:
+        oldest = next(iter(self))
+        del self[oldest]
+        self._bytes -= self._sizes.pop(oldest)
+
+
 class CauseRecorder(Following):
     """Asks the processes again and again for the causes that they have kept since.
 
@@ -78,7 +115,7 @@ class CauseRecorder(Following):
         told = msgspec.structs.replace(report, runs=[], sent=report.sent[:MOST_AT_ONCE])
         text = encoded(CauseRecord(*self._now(), told, self.offsets[participant]))
         if decoded(text) is None:
-            self.unreadable[participant] = self.nodes_of(participant)
+            self.unreadable.put(participant, self.nodes_of(participant))
         else:
             self._texts.append(text)
 
@@ -111,17 +148,18 @@ class CauseRecorder(Following):
 class RecordedCauses:
     """The causes in a recording, read in order of time.
 
-    Of many, the latest 100,000 things that were sent are kept, and the last one of each sender.
+    Of many, the latest 100,000 things that were sent are kept, and the last one of each sender; of
+    each, at most 128 MiB of JSON.
     """
 
     def __init__(self) -> None:
-        self._sent: Recent[Key, tuple[SentReport, CauseReport]] = Recent(MOST_READ)
-        self._last: Recent[tuple[Kind, bytes, str], tuple[SentReport, CauseReport]] = Recent(
-            MOST_SENDERS
+        self._sent: RecentParts[Key, tuple[SentReport, CauseReport]] = RecentParts(MOST_READ)
+        self._last: RecentParts[tuple[Kind, bytes, str], tuple[SentReport, CauseReport]] = (
+            RecentParts(MOST_SENDERS)
         )
-        self._reports: Recent[str, tuple[CauseReport, int]] = Recent(MOST_ENDPOINTS)
-        self._named: Recent[str, list[str]] = Recent(MOST_ENDPOINTS)
-        self._senders: Recent[bytes, Sender] = Recent(MOST_ENDPOINTS)
+        self._reports: RecentParts[str, tuple[CauseReport, int]] = RecentParts(MOST_ENDPOINTS)
+        self._named: RecentParts[str, list[str]] = RecentParts(MOST_ENDPOINTS)
+        self._senders: RecentParts[bytes, Sender] = RecentParts(MOST_ENDPOINTS)
         self._graph = CauseRecord(0, 0)  # the latest
         self._moment = 0, 0  # when the last one was told, by both clocks
 
@@ -134,18 +172,18 @@ class RecordedCauses:
         if record.report is None:
             self._graph = record
             for participant, names in record.named.items():
-                self._named.put(participant, names)
+                self._named.put_part(participant, names, names)
             for sender in record.senders:
-                self._senders.put(sender.gid, sender)
+                self._senders.put_part(sender.gid, sender, sender)
             return True
         report = msgspec.structs.replace(record.report, sent=[])
         offset_ns = record.offset_ns
         if report.participant in self._reports:
             offset_ns = min(offset_ns, self._reports[report.participant][1])
-        self._reports.put(report.participant, (report, offset_ns))
+        self._reports.put_part(report.participant, (report, offset_ns), report)
         for entry in record.report.sent:
-            self._sent.put((entry.kind, entry.gid, entry.sequence), (entry, report))
-            self._last.put((entry.kind, entry.gid, entry.name), (entry, report))
+            self._sent.put_part((entry.kind, entry.gid, entry.sequence), (entry, report), entry)
+            self._last.put_part((entry.kind, entry.gid, entry.name), (entry, report), entry)
         return True
 
     def why(self, name: str, at_ns: int | None = None) -> Why:

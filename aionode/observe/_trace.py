@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import heapq
+from collections import defaultdict
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
 from aionode.clock import S_TO_NS, perf_ns
+from aionode.engine.cause_reports import encoded
 from aionode.observe._following import AFTER_ALL, Following
 
 if TYPE_CHECKING:
@@ -23,6 +26,12 @@ LOOK_S: Final = 0.2
 MOST_EVENTS: Final = 1_000_000
 """How many callbacks and things sent a trace has at most."""
 
+MOST_BYTES: Final = 256 << 20
+"""The most bytes of answers that a trace is made of; a callback takes some 150."""
+
+MOST_NAME: Final = 300
+"""The most characters of a name that is repeated for each arrow."""
+
 
 class Trace(msgspec.Struct):
     """What processes did for a while.
@@ -30,7 +39,8 @@ class Trace(msgspec.Struct):
     Attributes:
         events: The events of the trace event format of Chrome, which Perfetto reads.
         callbacks: How many callbacks are in it.
-        lost: How many callbacks and things sent were no longer kept when they were asked for.
+        lost: How many callbacks and things sent are not in it: they were no longer kept when they
+            were asked for, or it was full.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
         silent: Those that did not answer at the end, in the same form.
         older: Those whose aionode cannot keep causes, or tells them in another form.
@@ -73,11 +83,15 @@ class Recording(Following):
         super().__init__(node)
         self._runs: list[tuple[str, RunReport]] = []
         self._sent: list[tuple[str, SentReport]] = []
+        self._bytes = 0
 
     def add(self, report: CauseReport) -> None:
-        """Keep what is new, up to a number."""
+        """Keep what is new, up to a number and a size."""
         participant = report.participant
         room = MOST_EVENTS - len(self._runs) - len(self._sent)
+        self._bytes += len(encoded(report))
+        if self._bytes > MOST_BYTES:
+            room = 0
         self.lost += max(len(report.runs) + len(report.sent) - room, 0)
         self._runs += [(participant, run) for run in report.runs[:room]]
         self._sent += [
@@ -86,14 +100,17 @@ class Recording(Following):
 
     def trace(self) -> Trace:
         """Return the trace, whose time begins with the first thing in it."""
+        runs = [each for each in self._runs if each[0] in self.told]
+        sent = [each for each in self._sent if each[0] in self.told]
+        forgotten = len(self._runs) + len(self._sent) - len(runs) - len(sent)
         trace = Trace(
-            [], len(self._runs), self.lost, self.not_kept, self.silent,
+            [], len(runs), self.lost + forgotten, self.not_kept, self.silent,
             self.older | self.unreadable,
         )  # fmt: skip
         began_ns = min(
             [
-                *(run.began_ns + self.offsets[participant] for participant, run in self._runs),
-                *(sent.at_ns + self.offsets[participant] for participant, sent in self._sent),
+                *(run.began_ns + self.offsets[participant] for participant, run in runs),
+                *(entry.at_ns + self.offsets[participant] for participant, entry in sent),
             ],
             default=0,
         )
@@ -104,9 +121,25 @@ class Recording(Following):
             drawing.add_process(
                 participant, f"{nodes or report.program} ({report.host} {report.pid})"
             )
-        drawing.add_runs(self._runs)
-        drawing.add_sent(self._sent)
+        drawing.add_runs(runs)
+        drawing.add_sent(sent)
         return trace
+
+
+class Lanes:
+    """The tracks of an entity: a callback that overlaps others has one of its own."""
+
+    def __init__(self) -> None:
+        self._busy: list[tuple[int, int]] = []  # when each ends, and its track; a heap
+        self._free: list[int] = []  # a heap as well
+
+    def take(self, began_ns: int, ended_ns: int) -> int:
+        """Return the first track that is free at the start of a callback, which takes it."""
+        while self._busy and self._busy[0][0] <= began_ns:
+            heapq.heappush(self._free, heapq.heappop(self._busy)[1])
+        lane = heapq.heappop(self._free) if self._free else len(self._busy)
+        heapq.heappush(self._busy, (ended_ns, lane))
+        return lane
 
 
 class Drawing:
@@ -124,7 +157,7 @@ class Drawing:
         self._zeros = zeros
         self._processes: dict[str, int] = {}
         self._tracks: dict[tuple[str, str, int], int] = {}
-        self._free: dict[tuple[str, str], list[int]] = {}  # when each track of an entity is free
+        self._lanes: dict[tuple[str, str], Lanes] = defaultdict(Lanes)
         self._places: dict[tuple[str, str, bytes, int, int], int] = {}  # the track of each run
         self._takers: dict[tuple[str, bytes, int], list[tuple[str, int, int]]] = {}
 
@@ -139,9 +172,7 @@ class Drawing:
         """Draw callbacks."""
         for participant, run in sorted(runs, key=lambda each: each[1].began_ns):
             entity = f"{run.node} {run.callback.rpartition('.')[2]} ({run.name})"
-            free = self._free.setdefault((participant, entity), [])
-            lane = next((n for n, at_ns in enumerate(free) if at_ns <= run.began_ns), len(free))
-            free[lane : lane + 1] = [run.ended_ns]
+            lane = self._lanes[participant, entity].take(run.began_ns, run.ended_ns)
             track = self._track(participant, entity, lane)
             self._places[place_of(participant, run)] = track
             taken = run.kind, run.gid, run.sequence
@@ -176,7 +207,7 @@ class Drawing:
                 "tid": track,
                 "ts": self._us(participant, sent.at_ns),
             }
-            name = f"{sent.kind} {sent.name}"
+            name = f"{sent.kind} {sent.name[:MOST_NAME]}"
             number_of = {"number": sent.sequence}
             self._events.append(
                 {"ph": "X", "name": name, "cat": "sent", "dur": 0.001, **place, "args": number_of}

@@ -8,6 +8,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -22,7 +23,15 @@ from aionode.engine.wire import cdr
 from aionode.errors import BagError
 from aionode.graph import NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
-from aionode.observe import Caused, CauseRecorder, RecordedCauses, Why, to_chains, why
+from aionode.observe import (
+    Caused,
+    CauseRecorder,
+    RecordedCauses,
+    Why,
+    _recorded,
+    to_chains,
+    why,
+)
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import local_context, settle
 from tests.observe.test_observe import Answering
@@ -138,6 +147,18 @@ def text_with(sent: list[Any], **clocks: int) -> str:
         "is_kept": True, "sent": sent,
     }  # fmt: skip
     return json.dumps(clocks | {"report": report})
+
+
+def test_what_is_kept_of_a_recording_has_a_bounded_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A compressed bag of others may have any number of causes with long names."""
+    monkeypatch.setattr(_recorded, "MOST_BYTES", 1000)
+    causes = RecordedCauses()
+    for at_s in range(1, 100):
+        assert causes.add(looked(at_s, at_s))
+
+    assert sum(len(msgspec.json.encode(entry)) for entry, _ in causes._sent.values()) <= 1000
+    assert causes.why("/t").sent[0].sequence == 99
+    assert not causes.add(looked(100, 100).replace('"h"', f'"{"h" * 2000}"'))
 
 
 def test_an_earlier_moment_can_be_asked_for(tmp_path: Path) -> None:

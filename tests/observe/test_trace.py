@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from aionode import Context, Node
 from aionode.cli._nouns.trace import record
@@ -15,7 +18,7 @@ from aionode.cli._support.output import Output
 from aionode.engine.cause_reports import CauseQuestion, answer, encoded
 from aionode.engine.causes import CauseLog
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.observe import record_trace
+from aionode.observe import _trace, record_trace
 from aionode.testing import local_context
 from tests.observe.test_observe import Answering
 from tests.support.peers import contexts_over
@@ -90,6 +93,31 @@ async def test_callbacks_and_arrows_are_true(way: str) -> None:
         for other in calls:
             if one is not other and one["tid"] == other["tid"] and one["ts"] <= other["ts"]:
                 assert other["ts"] >= one["ts"] + one["dur"] - 0.001
+
+
+@pytest.mark.parametrize("limit", ["MOST_EVENTS", "MOST_BYTES"])
+async def test_a_trace_is_bounded_and_counts_what_does_not_fit(
+    limit: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By number and by size: others choose the names of their nodes and callbacks."""
+    monkeypatch.setattr(_trace, limit, 0)
+    trace = await traced("local")
+
+    assert trace.callbacks == 0
+    assert trace.lost > 10
+
+
+@given(st.lists(st.tuples(st.integers(0, 50), st.integers(0, 20)), max_size=30))
+def test_callbacks_take_the_first_track_that_is_free(calls: list[tuple[int, int]]) -> None:
+    """None overlaps another on its track, and there are no more tracks than are needed at once."""
+    lanes = _trace.Lanes()
+    taken: list[tuple[int, int, int]] = []
+    for began, duration in sorted(calls):
+        ended = began + duration
+        busy = {lane for _, end, lane in taken if end > began}
+        lane = lanes.take(began, ended)
+        assert lane == next(free for free in count() if free not in busy)
+        taken.append((began, ended, lane))
 
 
 async def test_a_context_that_counts_backwards_hides_no_loss() -> None:

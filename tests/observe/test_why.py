@@ -19,13 +19,20 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Joy
 from aionode.interfaces.std_msgs.msg import Header, Int32
+from aionode.message import Message
 from aionode.message_filters import Subscriber, TimeSynchronizer, synchronize
-from aionode.observe import Caused, Why, to_chains, why
+from aionode.observe import Caused, Why, _causes, to_chains, why
 from aionode.testing import local_context, settle
 from tests.observe.test_observe import Answering
 from tests.support.peers import contexts_over
 
 CALL = AddTwoInts.Request(a=1, b=2)
+
+
+class Unknown(Message, typename="unknown_msgs/msg/Unknown", by_name=False):
+    """A class that is not found by name, as if another process had it."""
+
+    text: str = ""
 
 
 @asynccontextmanager
@@ -479,6 +486,44 @@ async def test_a_publisher_that_has_sent_nothing_is_told_of_as_such() -> None:
         found = await why(node, "out")
 
     assert to_chains(found) == "/out (robot, has sent nothing yet)"
+
+
+async def test_what_a_description_needed_is_no_cause() -> None:
+    """The command line asks for the type of an action before it sends a goal."""
+    async with robot() as node, Node("other", context=node.context) as other:
+        publisher = other.create_publisher(Unknown, "unknown", 1)
+        out = node.create_publisher(Int32, "out", 10)
+
+        async def on_in(_: Int32) -> None:
+            await node.find_type("unknown_msgs/msg/Unknown")
+            out.publish(Int32())
+
+        node.create_subscription(Int32, "in", on_in)
+        done = node.create_subscription(Int32, "out")
+        other.create_publisher(Int32, "in", 10).publish(Int32())
+        await done.receive()
+
+        assert await chain_of(node, "out") == ["message /out", "on_in", "message /in"]
+        publisher.destroy()
+
+
+async def test_a_long_list_of_causes_is_asked_for_in_several_questions(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A process answers a bounded number of keys, and the others counted as forgotten."""
+    monkeypatch.setattr(_causes, "MOST_TOLD", 1)
+    async with two_nodes("local", "one", "two") as (one, two):
+        inputs = [one.create_publisher(Int32, name, 10) for name in ("in_a", "in_b", "in_c")]
+        taken = [two.create_subscription(Int32, name) for name in ("in_a", "in_b", "in_c")]
+        out = two.create_publisher(Int32, "out", 10)
+        for publisher, subscription in zip(inputs, taken, strict=True):
+            await publisher.wait_for_subscribers()
+            publisher.publish(Int32())
+            await subscription.receive()
+        out.publish(Int32())
+        found = await why(two, "out")
+
+    assert [cause.source.unknown for cause in found.sent[0].causes if cause.source] == ["", "", ""]
 
 
 async def test_nobody_tells_what_another_has_sent() -> None:

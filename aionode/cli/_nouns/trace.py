@@ -57,7 +57,11 @@ async def record(node: Node, path: Path, *, output: Output, duration: float = 10
         "an older aionode, or a newer one that reports its callbacks differently": trace.older,
     }
     lines = [f"{path}: {trace.callbacks} callbacks"]
-    lines += [f"{trace.lost} were lost: too many between two questions"] if trace.lost else []
+    if trace.lost:
+        lines.append(
+            f"{trace.lost} callbacks and things sent are missing: there were more than a process "
+            "keeps between two questions, or than a trace holds; record for a shorter time"
+        )
     lines += [
         f"{', '.join(nodes)}: {text}"
         for text, those in notes.items()
