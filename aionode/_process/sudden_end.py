@@ -70,17 +70,23 @@ LIBRARY: Final = sys.stdlib_module_names | {"aionode", "rclpy", "uvloop"}
 """The code between a callback and the transport that called it."""
 
 SENDING: Final[list[str]] = []
-"""The packages of publishers and transports, which register themselves: see `mark_sending`."""
+"""The packages and modules of publishers and transports, which register themselves: see
+`mark_sending`."""
 
 
 def mark_sending(package: str) -> None:
     """Forbid sending from a signal handler that interrupts a module of `package`.
 
-    A package's own ``__init__`` calls it, so that it stays true when the package moves. It is for
+    A package's own ``__init__`` calls it, so that it stays true when the package moves; the classes
+    of `aionode.engine.transport.base` call it for each module that derives from them. It is for
     code that a signal can interrupt in the middle of a message: between numbering a message and
     writing its bytes, or with part of a frame in a socket.
+
+    Args:
+        package: The name of the package, or of a single module.
     """
-    SENDING.append(f"{package}.")
+    if not f"{package}.".startswith(tuple(SENDING)):
+        SENDING.append(f"{package}.")
 
 
 def is_sending(frame: FrameType | None) -> bool:

@@ -7,6 +7,9 @@ from collections import Counter
 from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
+from aionode._process import sudden_end
 from aionode._process.sudden_end import is_sending
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
@@ -88,11 +91,43 @@ def frames_of(frame: FrameType | None) -> Iterator[FrameType]:
         frame = frame.f_back
 
 
+def test_the_transport_of_another_package_is_sending() -> None:
+    """Its writers hold a part of a frame as well, and it derives from aionode's contract."""
+    made = ModuleType("own_transport")
+    exec(  # noqa: S102  # a module of its own
+        "import sys\nfrom aionode.transport.base import Writer\n"
+        "class Own(Writer):\n    def close(self): ...\n"
+        "    def write(self, test, sequence, source_ns): return test(sys._getframe())\n",
+        vars(made),
+    )
+
+    assert made.Own().write(is_sending, 1, 0)
+    assert not called_in("own_transport_of_none", lambda: is_sending(sys._getframe(1)))
+
+
 async def test_whatever_sends_says_so() -> None:
     """A signal handler that sent within such a step would tear a frame, or lose a message.
 
     A package of publishers or transports that moves, or a new one, has to call `mark_sending`.
     """
+    assert (await sent_everything()).unmarked == set()
+
+
+@pytest.mark.parametrize("package", ["aionode.endpoints", "aionode.engine.transport"])
+async def test_a_package_that_forgets_to_say_so_is_found(
+    package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As when it has moved: the test before would pass if it looked at nothing."""
+    marked = [each for each in sudden_end.SENDING if not each.startswith(package)]
+    monkeypatch.setattr(sudden_end, "SENDING", marked)
+
+    unmarked = (await sent_everything()).unmarked
+
+    assert any(name.startswith(package) for name in unmarked)
+
+
+async def sent_everything() -> Interrupted:
+    """Send messages, a large one and a request, and return what was seen of each call."""
     interrupted = Interrupted()
     sys.setprofile(interrupted)
     try:
@@ -111,7 +146,7 @@ async def test_whatever_sends_says_so() -> None:
     finally:
         sys.setprofile(None)
 
-    assert interrupted.unmarked == set()
     assert interrupted.writes["put"]
     assert interrupted.writes["sendmsg"] + interrupted.writes["send"]
     assert interrupted.publishing
+    return interrupted

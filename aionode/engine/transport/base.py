@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
 
 import msgspec
 
+from aionode._process.sudden_end import mark_sending
 from aionode.engine.transport.drops import Drops
 
 if TYPE_CHECKING:
@@ -70,7 +71,20 @@ class SampleInfo(msgspec.Struct, frozen=True, gc=False):
     arrived_ns: int = 0
 
 
-class Registration(ABC):
+class PartOfTransport:
+    """A part of a transport, whoever has written it: its module is one that sends.
+
+    The last messages of a process wait until such a module has finished what a signal interrupted.
+    """
+
+    __slots__ = ()
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        mark_sending(cls.__module__)
+
+
+class Registration(PartOfTransport, ABC):
     """Something announced to a transport, until it is closed."""
 
     @abstractmethod
@@ -220,7 +234,7 @@ class Writer(Registration):
         return None
 
 
-class StopSender(ABC):
+class StopSender(PartOfTransport, ABC):
     """Sends the stop of one lease through one writer, as the last message of that lease.
 
     Full queues never drop, delay or overtake it: what waits there before it may be dropped, and is
@@ -237,13 +251,13 @@ class StopSender(ABC):
         track sequence numbers accept it once.
         """
 
-    def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: B027  # as in `local`
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:  # as in `local`
         """Send it to other processes from any thread, while the loop's thread is busy elsewhere.
 
         That thread may be anywhere, except in a call of this writer by its publisher.
         """
 
-    def repeat(self) -> None:  # noqa: B027  # most lose nothing
+    def repeat(self) -> None:  # most lose nothing
         """Send it once more, with the same number, where it may be dropped; from any thread.
 
         The caller does so for a moment after `send_past_loop`. After `send` alone, the writer takes
@@ -317,7 +331,7 @@ class Requester(Registration):
         """
 
 
-class Request(ABC):
+class Request(PartOfTransport, ABC):
     """A request at the server's end. It is answered once; later answers are dropped.
 
     Attributes:
@@ -369,7 +383,7 @@ class LinkStatus(NamedTuple):
     pairs: AbstractSet[frozenset[str]]
 
 
-class Transport(ABC):
+class Transport(PartOfTransport, ABC):
     """One way to transport messages."""
 
     @abstractmethod
@@ -387,7 +401,7 @@ class Transport(ABC):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
-    def send_rest(self, ends_ns: int) -> None:  # noqa: B027  # most leave nothing for later
+    def send_rest(self, ends_ns: int) -> None:  # most leave nothing for later
         """Pass published messages that wait for the event loop to the operating system.
 
         Called in the loop's thread, within a signal handler that interrupted neither this nor an
@@ -416,7 +430,7 @@ class Transport(ABC):
         """Look for domains other than this one; most transports know of none."""
         return frozenset()
 
-    def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
+    def abandon(self) -> None:  # most have nothing to let go of
         """Release what a forked child inherited from its parent, without telling anyone.
 
         Called in the child, which never uses this transport again.
@@ -442,7 +456,7 @@ class Transport(ABC):
         """
         return {}
 
-    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:  # noqa: B027  # most have no one to tell
+    def tell(self, answers: Mapping[str, Callable[[bytes], bytes]]) -> None:
         """Answer other contexts: each function answers the questions of its name."""
 
     async def link_status(self) -> LinkStatus:
