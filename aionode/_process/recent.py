@@ -30,6 +30,6 @@ class Recent(dict[K, V]):
         """Set the value of a key; return the value of the evicted key, if any."""
         forgotten = None
         if key not in self and len(self) >= self._most:
-            forgotten = self.pop(next(iter(self)))
+            forgotten = self.pop(next(iter(self)), None)  # another thread may have removed it
         self[key] = value
         return forgotten

@@ -148,7 +148,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             partial(logger.warning, text),
         )
         # Threads that spin add and pop requests, each in one atomic step.
-        self._taken: dict[rmw_request_id_t, Request] = {}
+        self._taken: Recent[rmw_request_id_t, Request] = Recent(MOST_TAKEN)
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
     def ready(self) -> bool:
@@ -176,9 +176,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
                 continue
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
-            self._taken[request_id] = request
-            if len(self._taken) > MOST_TAKEN:
-                self._taken.pop(next(iter(self._taken)), None)
+            self._taken.put(request_id, request)
             self._introspection.tell(REQUEST_RECEIVED, info.gid, info.sequence, message)
             return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
 
