@@ -1,6 +1,6 @@
-"""Shows, checks and plays the bags in a clone of rosbag2: FOLDER is its argument.
+"""Show, check and play the bags in a clone of rosbag2, whose folder is the argument.
 
-It prints what each command ends with, and ends with status 1 if one of them fails.
+Prints the exit status of each command; its own is 1 if one of them fails.
 """
 
 from __future__ import annotations

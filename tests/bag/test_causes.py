@@ -89,7 +89,7 @@ async def record(path: Path, context: Context, **options: Any) -> Why:
 
 
 async def test_a_recording_answers_what_the_processes_have_answered(tmp_path: Path) -> None:
-    """The same chain, with the same times: what led to a message is a matter of that moment."""
+    """The same chain with the same times: the causes of a message never change."""
     async with Context(transport="local", causes=True) as context:
         live = await record(tmp_path / "run", context)
     with bag.open(tmp_path / "run") as run:
@@ -103,7 +103,7 @@ async def test_a_recording_answers_what_the_processes_have_answered(tmp_path: Pa
 
 @pytest.mark.parametrize("way", ["local", "link"])
 async def test_the_causes_of_several_processes_are_recorded(way: str, tmp_path: Path) -> None:
-    """A third asks both, as the recorder of a robot does; and its own nodes keep none."""
+    """A third process asks both, like the recorder of a robot; its own nodes keep no causes."""
     async with (
         contexts_over(way, causes=True) as (one, other),
         Node("slam", context=one) as slam,
@@ -121,7 +121,7 @@ async def test_the_causes_of_several_processes_are_recorded(way: str, tmp_path: 
 
 
 async def test_who_keeps_no_causes_is_named_with_the_remedy(tmp_path: Path) -> None:
-    """As in the live answer; the recorder itself is not one of them."""
+    """As in the live answer, except the recorder itself."""
     async with local_context() as context:
         live = await record(tmp_path / "run", context)
     with bag.open(tmp_path / "run") as run:
@@ -134,14 +134,14 @@ async def test_who_keeps_no_causes_is_named_with_the_remedy(tmp_path: Path) -> N
 
 
 def looked(at_s: int, *sent_s: int) -> str:
-    """Return the text of a look, 1000 s later by the other clock, with messages of ``/t``."""
+    """Return the text of a query with messages of ``/t``; the other clock is 1000 s ahead."""
     gid = "AAAAAAAAAAAAAAAAAAAAAA=="
     sent = [["message", "publisher", "/n", "/t", gid, at, at * 10**9, []] for at in sent_s]
     return text_with(sent, now_ns=at_s * 10**9, time_ns=(at_s + 1000) * 10**9)
 
 
 def text_with(sent: list[Any], **clocks: int) -> str:
-    """Return the text of a look in which one process tells what it has sent."""
+    """Return the text of a query in which one process reports what it has sent."""
     report = {
         "participant": "p", "host": "h", "pid": 1, "program": "x", "clock": "c", "now_ns": 0,
         "is_kept": True, "sent": sent,
@@ -150,7 +150,7 @@ def text_with(sent: list[Any], **clocks: int) -> str:
 
 
 def test_what_is_kept_of_a_recording_has_a_bounded_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A compressed bag of others may have any number of causes with long names."""
+    """A compressed bag from a stranger may contain any number of causes with long names."""
     monkeypatch.setattr(_recorded, "MOST_BYTES", 1000)
     causes = RecordedCauses()
     for at_s in range(1, 100):
@@ -162,7 +162,7 @@ def test_what_is_kept_of_a_recording_has_a_bounded_size(monkeypatch: pytest.Monk
 
 
 def test_an_earlier_moment_can_be_asked_for(tmp_path: Path) -> None:
-    """What was sent after it is not told; ages count back from it; the default is the end."""
+    """Later messages are left out, and ages count back from that moment, by default the end."""
     path = written(tmp_path / "run", looked(150, 100), looked(250, 200), looked(350))
 
     def latest(at: Time | Duration | None) -> list[tuple[int, int | None]]:
@@ -178,7 +178,7 @@ def test_an_earlier_moment_can_be_asked_for(tmp_path: Path) -> None:
 
 
 async def test_the_channel_is_not_played(tmp_path: Path) -> None:
-    """What a recording tells of its past is no news for a robot that listens now."""
+    """Nodes that listen to the player would take old causes for new ones."""
     async with Context(transport="local", causes=True) as context:
         await record(tmp_path / "run", context)
     async with local_context() as context, bag.Player(tmp_path / "run", context=context) as player:
@@ -190,7 +190,7 @@ async def test_the_channel_is_not_played(tmp_path: Path) -> None:
 
 
 async def test_nobody_else_writes_into_the_channel(tmp_path: Path) -> None:
-    """A message by its name is not recorded, whatever is selected."""
+    """A message published on its topic is not recorded, whatever is selected."""
     selection = bag.Selection(every=["topic"], hidden=True, topics=[CHANNEL])
     async with local_context() as context, Node("evil", context=context) as node:
         publisher = node.create_publisher(String, CHANNEL, 10)
@@ -292,7 +292,7 @@ def test_a_channel_of_another_type_is_the_same_error(tmp_path: Path) -> None:
 async def test_the_command_answers_from_a_bag(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without a node, and with the same lines; the exit status is 1 if nothing is known."""
+    """It prints the same lines without a node; its exit status is 1 if nothing is known."""
     async with Context(transport="local", causes=True) as context:
         await record(tmp_path / "run", context)
     path = str(tmp_path / "run")
@@ -315,7 +315,7 @@ async def test_the_command_answers_from_a_bag(
     )
 )
 def test_any_recording_is_answered(links: list[tuple[int, int, int]]) -> None:
-    """Also one whose causes go in circles and whose times are nonsense: bags come from others."""
+    """Even with circular causes and nonsensical times, since a bag may come from anyone."""
     gids = ["AAAAAAAAAAAAAAAAAAAAAA==", "BBBBBBBBBBBBBBBBBBBBBB=="]
 
     def run(number: int, at_ns: int) -> list[Any]:
@@ -336,7 +336,7 @@ def test_any_recording_is_answered(links: list[tuple[int, int, int]]) -> None:
 
 
 async def test_each_look_has_what_is_new(tmp_path: Path) -> None:
-    """A recording of an hour does not tell the same things an hour long."""
+    """An hour of recording does not repeat the same causes for an hour."""
     async with Context(transport="local", causes=True) as context, planner(context) as node:
         recorder = CauseRecorder(node)
         await plan(node)
@@ -347,7 +347,7 @@ async def test_each_look_has_what_is_new(tmp_path: Path) -> None:
 
 
 async def test_who_cannot_tell_is_named_and_spoils_no_recording() -> None:
-    """Frozen and older processes, and answers that no reader of the recording could read."""
+    """Frozen and older processes, and answers that a reader of the recording could not decode."""
     far = answer(CauseLog(), "d4", CauseQuestion())
     far.clock, far.now_ns = "another", 2**64 - 1
     transport = Answering({"a1": None, "b2": b"", "c3": b"\xff", "d4": encoded(far)})

@@ -38,14 +38,14 @@ def outputs(tmp_path: Path) -> Callable[..., Outputs]:
 
 
 def test_a_recording_does_not_differ_from_itself(outputs: Callable[..., Outputs]) -> None:
-    """Not even where it has NaN."""
+    """Not even where it contains NaN."""
     one = outputs(("/x", Float64(data=math.nan), 1), ("/y", String(data="a"), 2))
 
     assert bag.compare(one, one.records) == []
 
 
 def test_a_difference_has_topic_time_and_field(outputs: Callable[..., Outputs]) -> None:
-    """It says where to look in the program, and in the recording."""
+    """It says where to look, in the program and in the recording."""
     a = outputs(("/a", String(), 100), ("/cmd", Twist(linear=Vector3(x=1.0)), 350))
     b = outputs(("/a", String(), 100), ("/cmd", Twist(linear=Vector3(x=1.5)), 350))
 
@@ -78,7 +78,7 @@ def test_numbers_may_differ_by_the_tolerance(
 
 
 def test_elements_and_lengths_of_sequences_are_named(outputs: Callable[..., Outputs]) -> None:
-    """A message of a hundred joints differs in one of them."""
+    """A message of a hundred joints may differ in a single one."""
     a = outputs(("/j", JointState(name=["a", "b"], position=[1.0, 2.0]), 1))
     b = outputs(("/j", JointState(name=["a", "b"], position=[1.0, 3.0]), 1))
     c = outputs(("/j", JointState(name=["a"], position=[1.0, 2.0]), 1))
@@ -103,7 +103,7 @@ def test_missing_messages_times_and_types_are_differences(outputs: Callable[...,
 
 
 def test_so_many_differences_of_each_topic_are_listed(outputs: Callable[..., Outputs]) -> None:
-    """One topic that is all different does not hide another."""
+    """A topic that differs everywhere does not hide the others."""
     a = outputs(*[("/a", Float64(data=float(i)), i) for i in range(50)], ("/b", String(), 99))
     b = outputs(*[("/a", Float64(data=-1.0), i) for i in range(50)], ("/b", String(data="x"), 99))
 

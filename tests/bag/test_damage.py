@@ -1,4 +1,4 @@
-"""Damaged, contradictory and malicious bags: what can be read is read, and the rest is said."""
+"""Damaged, contradictory and malicious bags: readable data is read, the rest is reported."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def texts(path: Path, **limits: Any) -> list[str]:
 
 
 def heard_before_error(path: Path, *topics: str) -> tuple[list[str], BagError]:
-    """Return the texts that a bag gives, and the error after them."""
+    """Return the texts that a bag yields before an error, and the error."""
     heard: list[str] = []
     with bag.open(path) as run:
         try:
@@ -91,7 +91,7 @@ def sql(file: Path, text: str) -> None:
     ],
 )
 def test_a_topic_whose_file_and_metadata_differ_in_qos_is_read(change: str, tmp_path: Path) -> None:
-    """QoS is no identity: rosbag2's own `convert` leaves it out of the database."""
+    """QoS does not identify a topic: rosbag2's own `convert` leaves it out of the database."""
     make_sqlite3(tmp_path / "run", 4, 9)
     sql(tmp_path / "run" / "run_0.db3", change)
     assert texts(tmp_path / "run") == ALL
@@ -102,7 +102,7 @@ def test_a_topic_whose_file_and_metadata_differ_in_qos_is_read(change: str, tmp_
 
 
 def test_files_of_one_topic_with_different_qos_are_read_as_one_topic(tmp_path: Path) -> None:
-    """A publisher may have come back with another profile when the second file began."""
+    """A publisher may have restarted with another profile when the second file began."""
     make_sqlite3(tmp_path / "run", 4, 9)
     make_sqlite3(tmp_path / "more", 4, 9)
     (tmp_path / "more" / "more_0.db3").rename(tmp_path / "run" / "run_1.db3")
@@ -142,7 +142,7 @@ def test_messages_that_are_compressed_one_by_one_are_read(kind: str, tmp_path: P
 
 
 def test_a_count_that_is_not_what_can_be_read_is_an_error(tmp_path: Path) -> None:
-    """A copy of fewer messages than `info` shows would be taken for whole."""
+    """Otherwise a copy with fewer messages than `info` shows would pass as complete."""
     file = record(tmp_path / "run")
     data = bytearray(file.read_bytes())
     (at, *_) = [at for at in range(len(data)) if data[at : at + 9] == HEAD.pack(0x0B, 66)] or [0]
@@ -165,7 +165,7 @@ def test_a_count_that_is_not_what_can_be_read_is_an_error(tmp_path: Path) -> Non
 
 
 def test_the_other_chunks_of_a_file_with_a_damaged_one_are_read(tmp_path: Path) -> None:
-    """A bit that has flipped on a disk costs a second, and not the rest of a day."""
+    """A flipped bit on a disk costs one second of a recording, not the rest of the day."""
     file = record(tmp_path / "run")
     damage_chunk(file, 1)
     heard, error = heard_before_error(tmp_path / "run", "/words")
@@ -174,7 +174,7 @@ def test_the_other_chunks_of_a_file_with_a_damaged_one_are_read(tmp_path: Path) 
 
 
 async def test_async_for_gives_what_it_read_before_the_damage(tmp_path: Path) -> None:
-    """It reads many records at once, and the error is that of the last of them."""
+    """It reads many records at a time, and raises the error after the last good one."""
     file = record(tmp_path / "run")
     damage_chunk(file, 3)
     heard: list[str] = []
@@ -190,7 +190,7 @@ async def test_async_for_gives_what_it_read_before_the_damage(tmp_path: Path) ->
 
 
 def test_check_looks_into_the_chunks_and_keeps_all_that_are_whole(tmp_path: Path) -> None:
-    """The summary may be whole while the data are not; every reader passes over what is damaged."""
+    """The summary may be intact while the data is not; every reader skips damaged chunks."""
     file = record(tmp_path / "run")
     damage_chunk(file, 1)
     lost = chunks(file)[1].chunk_length
@@ -215,7 +215,7 @@ def test_a_file_without_an_end_keeps_what_follows_a_damaged_chunk(tmp_path: Path
 
 
 def test_one_topic_whose_qos_cannot_be_read_leaves_the_others_readable(tmp_path: Path) -> None:
-    """It is read, too, and says what is missing."""
+    """It is read as well, and reports what is missing."""
     file = record(tmp_path / "run")
     data = file.read_bytes().replace(b"history: keep_last", b"history: [eep_last")
     data = data[:-12] + bytes(4) + data[-8:]
@@ -239,7 +239,7 @@ def test_one_topic_whose_qos_cannot_be_read_leaves_the_others_readable(tmp_path:
 def test_the_other_rows_of_a_database_with_a_strange_one_are_read(
     change: str, problem: str, tmp_path: Path
 ) -> None:
-    """Columns of SQLite take any value, whatever their type is."""
+    """SQLite's columns accept any value, whatever their type."""
     make_sqlite3(tmp_path / "run", 4, 9)
     file = tmp_path / "run" / "run_0.db3"
     change = change.replace("messages", "copy")
@@ -260,7 +260,7 @@ def test_the_other_rows_of_a_database_with_a_strange_one_are_read(
 def test_times_that_no_clock_shows_are_the_nearest_that_one_does(
     time_ns: int, tmp_path: Path
 ) -> None:
-    """They come from damage, and from clocks that were never set."""
+    """They come from damage and from clocks that were never set."""
     make_sqlite3(tmp_path / "run", 4, 9)
     with closing(sqlite3.connect(tmp_path / "run" / "run_0.db3")) as base, base:
         base.execute("UPDATE messages SET timestamp = ? WHERE id = 2", (time_ns,))
@@ -271,7 +271,7 @@ def test_times_that_no_clock_shows_are_the_nearest_that_one_does(
 
 
 def test_a_message_of_a_time_beyond_all_clocks_is_read(tmp_path: Path) -> None:
-    """MCAP has times of 64 bits without a sign."""
+    """MCAP's times are unsigned 64-bit numbers."""
     with bag.BagWriter(tmp_path / "run") as out:
         number = out.add_topic(topic_info("/words", String))
         out.write(number, 2**64 - 2, cdr.encode(String(data="late")))
@@ -281,7 +281,7 @@ def test_a_message_of_a_time_beyond_all_clocks_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("at", [2**63, 2**64 - 1, 10**6])
 def test_an_offset_beyond_the_file_is_damage_with_its_place(at: int, tmp_path: Path) -> None:
-    """Such a number may be larger than any file can be."""
+    """The offset may be larger than any file."""
     file = record(tmp_path / "run")
     data = bytearray(file.read_bytes())
     data[-8 - 20 : -8 - 12] = at.to_bytes(8, "little")
@@ -292,7 +292,7 @@ def test_an_offset_beyond_the_file_is_damage_with_its_place(at: int, tmp_path: P
 
 
 def test_a_database_with_a_damaged_page_is_read_up_to_it(tmp_path: Path) -> None:
-    """The error after it names a tool for the rest: `bag check` repairs no databases."""
+    """The error names a tool for the rest, since `bag check` does not repair databases."""
     make_sqlite3(tmp_path / "run", 4, 9)
     file = tmp_path / "run" / "run_0.db3"
     sql(
@@ -317,7 +317,7 @@ def test_a_database_with_a_damaged_page_is_read_up_to_it(tmp_path: Path) -> None
 
 
 def test_a_view_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
-    """It may count for ever."""
+    """A view may produce rows forever."""
     make_sqlite3(tmp_path / "run", 4, 9)
     sql(
         tmp_path / "run" / "run_0.db3",
@@ -336,7 +336,7 @@ def test_a_view_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
 def test_a_chunk_that_is_larger_than_is_believable_is_refused(
     compression: str, said: int, tmp_path: Path
 ) -> None:
-    """A file of 32 kB may not take 1 GiB, whatever it says of its size."""
+    """A file of 32 kB may not allocate 1 GiB, whatever size it claims."""
     plain = bytes(200 << 20)
     packed = zstandard.compress(plain) if compression == "zstd" else lz4.frame.compress(plain)
     if compression == "lz4" and said > 100:
@@ -349,7 +349,7 @@ def test_a_chunk_that_is_larger_than_is_believable_is_refused(
 def test_a_file_that_decompresses_to_more_than_is_believable_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It would fill the temporary folder, from which other programs live."""
+    """It would fill the temporary folder, which other programs need."""
     monkeypatch.setattr("aionode.bag.files.compression.LARGEST_FILE", 1 << 20)
     (tmp_path / name).write_bytes(zstandard.compress(bytes(64 << 20)))
     with pytest.raises(BagError, match="decompresses to more than"):
@@ -357,7 +357,7 @@ def test_a_file_that_decompresses_to_more_than_is_believable_is_refused(
 
 
 def test_a_full_temporary_folder_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The bag is not damaged, and the remedy is another place."""
+    """The bag is not damaged; another temporary folder is the remedy."""
     file = record(tmp_path / "run")
     packed = tmp_path / "run_0.mcap.zstd"
     packed.write_bytes(zstandard.compress(file.read_bytes()))
@@ -371,7 +371,7 @@ def test_a_full_temporary_folder_is_named(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_aliases_of_aliases_in_metadata_are_refused(tmp_path: Path) -> None:
-    """Ten lines stand for ten billion values."""
+    """Ten lines can expand to ten billion values."""
     lines = ["a0: &a0 [1,1,1,1,1,1,1,1,1,1]"]
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 10)]
     (tmp_path / "metadata.yaml").write_text("\n".join(lines))
@@ -381,14 +381,14 @@ def test_aliases_of_aliases_in_metadata_are_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["x.mcap", "x.db3", "metadata.yaml"])
 def test_a_pipe_is_refused_at_once(name: str, tmp_path: Path) -> None:
-    """Opening it would wait for a writer that never comes."""
+    """Opening it would wait forever for a writer."""
     os.mkfifo(tmp_path / name)
     with pytest.raises(BagError, match="pipe or a device"):
         bag.open(tmp_path if name == "metadata.yaml" else tmp_path / name)
 
 
 def test_the_pointer_of_git_lfs_is_called_one(tmp_path: Path) -> None:
-    """Cloning without LFS leaves it, and no repair makes a bag of it."""
+    """Cloning without LFS leaves a pointer, which no repair can turn into a bag."""
     make_mcap(tmp_path / "run")
     pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 5\n"
     for name in ("run_0.mcap", "x.db3"):
@@ -406,7 +406,7 @@ def test_the_pointer_of_git_lfs_is_called_one(tmp_path: Path) -> None:
 def test_a_chunk_that_is_too_large_is_no_damage_to_repair(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With the limit raised it can be read, and a check must not take it away."""
+    """It can be read with a higher limit, so a check must not remove it."""
     monkeypatch.setattr("aionode.bag.files.compression.LARGEST_PART", 1000)
     with bag.BagWriter(tmp_path / "run") as out:
         out.write(
@@ -422,7 +422,7 @@ def test_a_chunk_that_is_too_large_is_no_damage_to_repair(
 
 
 def test_rows_of_a_topic_that_is_not_listed_are_said(tmp_path: Path) -> None:
-    """A join of the tables leaves them out without a word."""
+    """A join of the tables would silently leave them out."""
     make_sqlite3(tmp_path / "run", 4, 9)
     sql(tmp_path / "run" / "run_0.db3", "UPDATE messages SET topic_id = 7 WHERE id = 2")
     heard, error = heard_before_error(tmp_path / "run")
@@ -436,7 +436,7 @@ def test_rows_of_a_topic_that_is_not_listed_are_said(tmp_path: Path) -> None:
 def test_names_in_a_bag_cannot_look_like_other_lines(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A new line in a name would add a topic to `bag info`, and an escape move the cursor."""
+    """A newline in a name would add a line to `bag info`, and an escape code move the cursor."""
     odd = "/a\nTopic: /b | Type: x | Count: 9\r\x1b[2J"
     for name in ("one", "two"):
         with bag.BagWriter(tmp_path / name, custom_data={"x\ny": "1\n2"}) as out:

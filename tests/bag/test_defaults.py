@@ -1,4 +1,4 @@
-"""Defaults of a type's fields, in every way of a bag: as they were recorded, never zeros."""
+"""Defaults of a type's fields are as they were recorded, never zeros, however a bag is handled."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ async def record(path: Path, kind: Any) -> None:
 
 
 def defaults_in(path: Path) -> str:
-    """Return a message of defaults of the type in a bag, which no program here knows by name."""
+    """Return a default message of a type that only the bag defines."""
     with bag.open(path) as run:
         return repr(run.topics["/gains"].msg_type())
 
 
 def converted(path: Path, out: Path) -> None:
-    """Write a bag anew."""
+    """Convert a bag."""
     bag.convert([path], out)
 
 
@@ -69,14 +69,14 @@ def cut(path: Path, out: Path) -> None:
 
 
 def edited(path: Path, out: Path) -> None:
-    """Write the messages of a bag anew, each as a message that leaves all fields out."""
+    """Rewrite a bag, with each message replaced by one that sets no field."""
     with bag.open(path) as run, bag.BagWriter(out) as writer:
         for each in run.read():
             writer.write_message(each.topic, type(each.message)(), each.time)
 
 
 def converted_by_rosbag2_py(path: Path, out: Path) -> None:
-    """Write a bag anew, as a program for `rosbag2_py` does."""
+    """Convert a bag as a program for `rosbag2_py` does."""
     reader, writer = rosbag2_py.SequentialReader(), rosbag2_py.SequentialWriter()
     reader.open_uri(str(path))
     writer.open(rosbag2_py.StorageOptions(uri=str(out)), rosbag2_py.ConverterOptions())
@@ -93,7 +93,7 @@ def converted_by_rosbag2_py(path: Path, out: Path) -> None:
 async def test_a_bag_keeps_the_defaults_of_its_types(
     kind: Any, change: Callable[[Path, Path], None], tmp_path: Path
 ) -> None:
-    """Who leaves out a field means the default of the robot that was recorded."""
+    """A field that is left out has the default of the robot that was recorded."""
     await record(tmp_path / "run", kind)
     assert defaults_in(tmp_path / "run") == EXPECTED
     await asyncio.to_thread(change, tmp_path / "run", tmp_path / "new")
@@ -103,7 +103,7 @@ async def test_a_bag_keeps_the_defaults_of_its_types(
 
 
 async def test_a_player_describes_the_defaults_and_a_recorder_keeps_them(tmp_path: Path) -> None:
-    """For `topic pub` beside a recording that is played, and for a recording of that."""
+    """For `topic pub` while a recording is played, and for a recording of that."""
     await record(tmp_path / "run", GAINS)
     async with (
         local_context() as context,

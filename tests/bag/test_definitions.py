@@ -1,4 +1,4 @@
-"""Definitions in recordings: whatever their language and names are, their messages are read."""
+"""Type definitions in recordings are read in every language and with any names."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def info(encoding: str, definition: str, typename: str = "ublox/msg/NavPVT") -> 
 
 @pytest.mark.parametrize(("encoding", "text"), [("ros2msg", MSG), ("ros2idl", IDL)])
 def test_names_that_ros_does_not_allow_are_read(encoding: str, text: str) -> None:
-    """Packages of ROS 1 have them; a keyword of Python has an underscore, as in rosbags."""
+    """ROS 1 packages have such names; a Python keyword gets an underscore, as in rosbags."""
     made = info(encoding, text).msg_type
     message = made(iTOW=7)
     message.part.from_ = "gps"
@@ -70,7 +70,7 @@ def test_names_that_ros_does_not_allow_are_read(encoding: str, text: str) -> Non
 
 @pytest.mark.parametrize("typename", ["demo/msg/speed", "Demo/msg/Speed2D_v"])
 def test_types_whose_names_ros_does_not_allow_are_read(typename: str) -> None:
-    """The robot that recorded them has no other name for them."""
+    """The robot that recorded them knows no other name."""
     package = typename.partition("/")[0]
     made = info(
         "ros2msg",
@@ -110,7 +110,7 @@ async def test_one_definition_that_cannot_be_read_costs_its_own_topic(tmp_path: 
 
 
 def test_a_type_of_a_recording_has_the_hash_that_ros_gives_it() -> None:
-    """Playing it reaches the nodes of those who recorded it."""
+    """So that playing it reaches nodes of the robot that recorded it."""
     made: Any = define("a/msg/B", "string from\n", recorded=True)
     plain: Any = define("a/msg/B", "string origin\n")
     assert description_message(made).type_description.fields[0].name == "from"

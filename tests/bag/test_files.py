@@ -1,4 +1,4 @@
-"""Files of bags: what is written here is read by other libraries, and the other way round."""
+"""Bag files are exchanged with other libraries in both directions."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ rows = st.lists(
 def test_all_readers_get_the_messages_that_were_written(
     rows: list[Row], compression: str, split: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Foxglove and other programs read files of bags by libraries of their own.
+    """Foxglove and other programs read bag files with their own libraries.
 
     We yield messages by time, and those of one time as they were written, across chunks and files.
     """
@@ -100,7 +100,7 @@ def test_all_readers_get_the_messages_that_were_written(
 
 
 def test_a_bag_says_what_rosbag2_says_of_types_and_qos(tmp_path: Path) -> None:
-    """Tools of ROS 2 decode by the schema, and play with the recorded QoS."""
+    """ROS 2 tools decode with the schema, and play with the recorded QoS."""
     write(tmp_path / "run", words("hello"), custom_data={"robot": "r2"})
     with (tmp_path / "run" / "run_0.mcap").open("rb") as stream:
         reader = make_reader(stream)
@@ -130,7 +130,7 @@ def test_a_bag_says_what_rosbag2_says_of_types_and_qos(tmp_path: Path) -> None:
 
 
 def test_a_definition_names_every_type_that_it_uses(tmp_path: Path) -> None:
-    """`mcap`'s and rosbags' decoders know no type but those of the schema."""
+    """The decoders of `mcap` and rosbags know only the types in the schema."""
     with bag.BagWriter(tmp_path / "run") as out:
         out.write_message("/imu", Imu(), Time(seconds=1))
     store = get_typestore(Stores.EMPTY)
@@ -141,7 +141,7 @@ def test_a_definition_names_every_type_that_it_uses(tmp_path: Path) -> None:
 
 
 def test_start_and_end_and_duration_are_those_of_the_messages(tmp_path: Path) -> None:
-    """The times of a bag are its messages', whatever the files are."""
+    """A bag's times are those of its messages, however it is split into files."""
     write(tmp_path / "run", words("a", "b", "c"), max_messages=2)
     with bag.open(tmp_path / "run") as run:
         assert (run.start, run.end) == (
@@ -153,7 +153,7 @@ def test_start_and_end_and_duration_are_those_of_the_messages(tmp_path: Path) ->
 
 
 def test_a_piece_of_a_bag_begins_at_its_start_and_ends_before_its_end(tmp_path: Path) -> None:
-    """Half-open pieces can be put together again, as in mcap and rosbags."""
+    """Half-open ranges can be joined again, as in mcap and rosbags."""
     write(tmp_path / "run", words("a", "b", "c"))
     assert texts(tmp_path / "run", start=Duration(seconds=1)) == ["b", "c"]
     with bag.open(tmp_path / "run") as run:
@@ -161,21 +161,21 @@ def test_a_piece_of_a_bag_begins_at_its_start_and_ends_before_its_end(tmp_path: 
 
 
 async def test_records_are_read_in_a_thread_by_async_for(tmp_path: Path) -> None:
-    """Decompression takes milliseconds, which the event loop does not have."""
+    """Decompression takes milliseconds, too long for the event loop."""
     write(tmp_path / "run", words("a", "b", "c"))
     with bag.open(tmp_path / "run") as run:
         assert [r.message.data async for r in run.read("/words")] == ["a", "b", "c"]
 
 
 def test_a_topic_that_is_not_there_is_named_with_those_that_are(tmp_path: Path) -> None:
-    """A misspelled topic would otherwise look like a robot that said nothing."""
+    """Otherwise a misspelled topic would look like a robot that published nothing."""
     write(tmp_path / "run", words("a"))
     with bag.open(tmp_path / "run") as run, pytest.raises(BagError, match=r"/word; .*: /words"):
         run.read(topics=["/word"])
 
 
 def test_a_type_unknown_here_is_made_of_the_definition_in_the_bag(tmp_path: Path) -> None:
-    """A robot's own types are in its bags, and need no installation."""
+    """A bag contains the definitions of a robot's own types, so they need no installation."""
     topic = bag.TopicInfo(
         name="/words",
         type="robot_msgs/msg/Words",
@@ -192,7 +192,7 @@ def test_a_type_unknown_here_is_made_of_the_definition_in_the_bag(tmp_path: Path
 
 
 def test_a_type_whose_definition_has_changed_is_decoded_as_it_was_recorded(tmp_path: Path) -> None:
-    """An old bag has the old type, and the program's new one would decode nonsense."""
+    """Decoding an old bag with the program's new type would yield nonsense."""
     topic = bag.TopicInfo(
         name="/words", type="std_msgs/msg/String", encoding="ros2msg", definition="int32 number\n"
     )
@@ -204,7 +204,7 @@ def test_a_type_whose_definition_has_changed_is_decoded_as_it_was_recorded(tmp_p
 
 
 def test_a_type_that_nobody_defines_can_be_read_as_bytes(tmp_path: Path) -> None:
-    """Such a topic can still be played, cut and copied."""
+    """Such a topic can still be played, cut out and copied."""
     with bag.BagWriter(tmp_path / "run") as out:
         out.write(out.add_topic(bag.TopicInfo(name="/x", type="robot_msgs/msg/X")), 1, b"\0\1\0\0")
     with bag.open(tmp_path / "run") as run:
@@ -226,7 +226,7 @@ def test_a_service_event_is_decoded_by_its_service(tmp_path: Path) -> None:
 
 
 def test_each_file_of_a_split_bag_begins_with_the_latched_messages(tmp_path: Path) -> None:
-    """Without the map and the static transforms, a file by itself is of no use."""
+    """Without the map and the static transforms, a single file is useless."""
     with bag.BagWriter(tmp_path / "run", max_messages=3) as out:
         latched = out.add_topic(topic_info("/map", String), latched_depth=1)
         other = out.add_topic(topic_info("/x", String))
@@ -249,7 +249,7 @@ def test_only_the_newest_files_are_kept_if_there_is_a_limit(tmp_path: Path) -> N
 def test_bags_of_rosbags_are_read(
     storage: StoragePlugin, mode: CompressionMode, version: Literal[8, 9], tmp_path: Path
 ) -> None:
-    """They are what users have from robots, whole and compressed."""
+    """Users have such bags from their robots, plain and compressed."""
     store = get_typestore(Stores.ROS2_JAZZY)
     writer = Writer(tmp_path / "old", version=version, storage_plugin=storage)
     if mode is not CompressionMode.NONE:
@@ -264,7 +264,7 @@ def test_bags_of_rosbags_are_read(
 
 
 def test_a_file_that_is_not_closed_is_an_error_that_names_the_remedy(tmp_path: Path) -> None:
-    """A power cut leaves such files."""
+    """A power cut leaves files like this."""
     write(tmp_path / "run", words("a"))
     file = tmp_path / "run" / "run_0.mcap"
     file.write_bytes(file.read_bytes()[:-40])

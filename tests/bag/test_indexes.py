@@ -1,4 +1,4 @@
-"""Summaries and indexes of bags that are wrong or missing: no message is left out for them."""
+"""Wrong or missing summaries and indexes never cost a message."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def write(file: Path, *, first_ns: int = 0, other: bool = False, **options: Any)
 
 
 def patch(file: Path, kind: Opcode, at: int, value: int, *, which: int = 0) -> None:
-    """Write a number of eight bytes into a record of the summary, which loses its checksum."""
+    """Write a 64-bit number into a record of the summary, and remove its checksum."""
     data = bytearray(file.read_bytes())
     footer = len(data) - 8 - 20
     place = struct.unpack_from("<Q", data, footer)[0]
@@ -56,7 +56,7 @@ START_IN_CHUNK_INDEX, END_IN_CHUNK_INDEX = 0, 8
 
 
 def make_folder(folder: Path, start_ns: int) -> None:
-    """Make the folder of a file a bag whose metadata tell its start."""
+    """Turn a file's folder into a bag whose metadata gives its start."""
     content = {
         "version": 5,
         "storage_identifier": "mcap",
@@ -91,7 +91,7 @@ async def played(path: Path, **options: Any) -> list[str]:
 
 
 def leave_out_the_first(file: Path, how: str) -> None:
-    """Let the summary of a file leave out its message of the time 0."""
+    """Rewrite a file's summary so that it leaves out the message at time 0."""
     write(file, use_chunking=how != "no chunks")
     patch(file, Opcode.STATISTICS, START_IN_STATISTICS, STEP_NS)
     if how == "chunk index":
@@ -101,7 +101,7 @@ def leave_out_the_first(file: Path, how: str) -> None:
 
 @pytest.mark.parametrize("how", ["statistics", "chunk index", "no chunks"])
 async def test_a_message_that_the_summary_leaves_out_is_played(how: str, tmp_path: Path) -> None:
-    """Versions of libmcap do not count the time 0 in statistics: files of rosbag2 show it."""
+    """Some versions of libmcap do not count time 0 in statistics, as files of rosbag2 show."""
     file = tmp_path / "run_0.mcap"
     leave_out_the_first(file, how)
     assert texts(file) == TEXTS
@@ -118,7 +118,7 @@ async def test_a_message_that_the_summary_leaves_out_is_played(how: str, tmp_pat
 
 
 def test_a_start_in_the_metadata_at_which_nothing_is_does_not_count(tmp_path: Path) -> None:
-    """A player would wait for years of nothing."""
+    """A player would wait for years."""
     write(tmp_path / "run_0.mcap", first_ns=10**18)
     make_folder(tmp_path, 0)
     with bag.open(tmp_path) as run:
@@ -143,7 +143,7 @@ def test_a_start_in_the_metadata_at_which_nothing_is_does_not_count(tmp_path: Pa
     ],
 )
 async def test_what_a_summary_lacks_is_found_in_the_file(options: Any, tmp_path: Path) -> None:
-    """rosbag2 has an option to leave out each part of it, which is no damage."""
+    """rosbag2 has options to leave out each part, which is not damage."""
     file = tmp_path / "run_0.mcap"
     write(file, first_ns=STEP_NS, other=True, **options)
     with bag.open(file) as run:
@@ -157,7 +157,7 @@ async def test_what_a_summary_lacks_is_found_in_the_file(options: Any, tmp_path:
 
 
 def test_check_repairs_the_index_of_a_chunk_that_leaves_out_messages(tmp_path: Path) -> None:
-    """A reader that wants a part of the recording believes the index."""
+    """A reader of a part of the recording relies on the index."""
     file = tmp_path / "run_0.mcap"
     write(file)
     patch(file, Opcode.CHUNK_INDEX, START_IN_CHUNK_INDEX, 90 * STEP_NS, which=2)

@@ -1,8 +1,7 @@
-"""A recording process is killed at fifty random moments, and its power is cut: make bag-kills.
+"""Kill a recorder at fifty random moments, and cut its power: make bag-kills.
 
-All but the last second has to be there. SIGKILL leaves what was written; a power cut leaves no more
-than was there at the last fdatasync, for which the file is cut to its size then, or goes on with
-zeros.
+At most the last second may be missing. SIGKILL leaves what was written; a power cut leaves only
+what the last fdatasync confirmed, so the file is cut to its size then, or continued with zeros.
 """
 
 from __future__ import annotations
@@ -97,7 +96,7 @@ def after_power_cut(path: Path, number: int) -> Path:
 @pytest.mark.processes
 @pytest.mark.timeout(600)
 def test_all_but_the_last_second_outlives_a_kill_and_a_power_cut(tmp_path: Path) -> None:
-    """What a robot did in its last seconds is what everybody wants to see."""
+    """The last seconds before a crash are the ones that matter."""
     moments = random.Random(7)  # noqa: S311  # any moments
     places = asyncio.Semaphore(AT_ONCE)
     lost: list[float] = []

@@ -64,7 +64,7 @@ REPAIRS: list[Callable[[Path], object]] = [
 def recorder(
     path: Path, compression: str = "zstd", forks: str = ""
 ) -> Iterator[subprocess.Popen[bytes]]:
-    """Run a recorder whose topics are silent for long."""
+    """Run a recorder whose topics stay silent."""
     with subprocess.Popen(
         [sys.executable, "-W", "ignore", "-c", PROGRAM, str(path), compression, forks],
         stdin=subprocess.PIPE,
@@ -81,7 +81,7 @@ def recorder(
 
 
 def content(path: Path) -> dict[str, bytes]:
-    """Return what is in the files of a bag."""
+    """Return the contents of a bag's files."""
     return {file.name: file.read_bytes() for file in path.iterdir()}
 
 
@@ -90,7 +90,7 @@ def content(path: Path) -> dict[str, bytes]:
 def test_a_silent_recording_is_left_alone_until_its_recorder_is_killed(
     compression: str, tmp_path: Path
 ) -> None:
-    """A repair would cut off what is recorded next. A recorder that is stopped may go on."""
+    """A repair would cut off what is recorded next, and a suspended recorder may resume."""
     run = tmp_path / "run"
     with recorder(run, compression) as program:
         before = content(run)
@@ -113,7 +113,7 @@ def test_a_silent_recording_is_left_alone_until_its_recorder_is_killed(
 def test_a_forked_child_does_not_hold_the_lock_of_a_recorder_that_was_killed(
     tmp_path: Path,
 ) -> None:
-    """Else its bag could not be repaired while the child lives."""
+    """Otherwise its bag could not be repaired while the child runs."""
     run = tmp_path / "run"
     with recorder(run, forks="yes") as program:
         program.kill()
@@ -123,7 +123,7 @@ def test_a_forked_child_does_not_hold_the_lock_of_a_recorder_that_was_killed(
 
 
 def test_a_closed_file_of_a_recording_can_be_checked(tmp_path: Path) -> None:
-    """It is only read."""
+    """Checking only reads it."""
     with bag.BagWriter(tmp_path / "run") as out:
         out.split(1)
         assert bag.check(tmp_path / "run/run_0.mcap") == [("run_0.mcap", False, 0, 0)]
@@ -132,14 +132,14 @@ def test_a_closed_file_of_a_recording_can_be_checked(tmp_path: Path) -> None:
 
 
 def without_locks(_: int, __: int) -> None:
-    """Do what `flock` does on a file system that has no locks."""
+    """Fail like `flock` on a file system without locks."""
     raise OSError
 
 
 def test_without_locks_a_file_that_was_just_written_to_is_left_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It may be being recorded; one that has been quiet is repaired."""
+    """It may still be recorded; one that was not written to for a while is repaired."""
     record(tmp_path / "run")
     file = tmp_path / "run/run_0.mcap"
     file.write_bytes(file.read_bytes()[:-30])
@@ -151,7 +151,7 @@ def test_without_locks_a_file_that_was_just_written_to_is_left_alone(
 
 
 def test_a_file_that_another_program_was_just_writing_to_is_left_alone(tmp_path: Path) -> None:
-    """rosbag2 has no lock, so only the age of the file tells that it may be recording."""
+    """rosbag2 takes no lock, so only the file's age shows that it may still be recorded."""
     file = tmp_path / "run_0.mcap"
     file.write_bytes(MAGIC + record_bytes(Header("ros2", "libmcap 1.1.0")))
     with pytest.raises(BagError, match="just written to"):
@@ -161,7 +161,7 @@ def test_a_file_that_another_program_was_just_writing_to_is_left_alone(tmp_path:
 
 
 def test_a_file_of_another_program_that_has_its_end_is_repaired_at_once(tmp_path: Path) -> None:
-    """Its recorder is done with it, so it does not matter when that was."""
+    """Its recorder has finished it, so its age does not matter."""
     file = tmp_path / "run_0.mcap"
     file.write_bytes(MAGIC + record_bytes(Header("ros2", "libmcap 1.1.0")) + MAGIC)
     assert bag.check(file)[0].repaired
@@ -170,7 +170,7 @@ def test_a_file_of_another_program_that_has_its_end_is_repaired_at_once(tmp_path
 def test_a_process_is_named_only_if_it_is_certain(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Files of several disks can have the same number."""
+    """Files on different disks can have the same inode number."""
     listed = tmp_path / "locks"
     monkeypatch.setattr(lock, "LOCKS", listed)
     one = f"1: FLOCK  ADVISORY  WRITE 12 08:01:{tmp_path.stat().st_ino} 0 EOF\n"

@@ -1,6 +1,6 @@
-"""Bags are read by @mcap/core, which shares no code with the libraries of Python: make bag-reader.
+"""Read bags with @mcap/core, which shares no code with Python's libraries: make bag-reader.
 
-It needs node, and a folder with the packages @mcap/core, fzstd and lz4js, which MCAP_CORE names.
+This needs Node.js, and MCAP_CORE set to a folder with @mcap/core, fzstd and lz4js.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ pytestmark = pytest.mark.skipif(
 
 
 def read(file: Path) -> list[str]:
-    """Return what @mcap/core finds in a file, a line for each message."""
+    """Return what @mcap/core finds in a file, one line per message."""
     done = subprocess.run(
         ["node", str(SCRIPT), FOLDER, str(file)], capture_output=True, text=True, check=False
     )
@@ -57,7 +57,7 @@ def record(path: Path, compression: str) -> None:
 
 @pytest.mark.parametrize("compression", ["zstd", "lz4", "none"])
 def test_an_independent_reader_gets_every_message(compression: str, tmp_path: Path) -> None:
-    """Topics, times, numbers and bytes are those that were written, and all checksums hold."""
+    """Topics, times, numbers and bytes are as written, and all checksums are right."""
     record(tmp_path / "run", compression)
     with bag.open(tmp_path / "run") as run:
         wanted = [line(each) for each in run.read()]
@@ -66,7 +66,7 @@ def test_an_independent_reader_gets_every_message(compression: str, tmp_path: Pa
 
 
 def test_an_independent_reader_gets_what_was_repaired(tmp_path: Path) -> None:
-    """A file that a power cut has shortened is whole again for everybody."""
+    """A file shortened by a power cut is complete again for every reader."""
     record(tmp_path / "run", "zstd")
     file = tmp_path / "run" / "run_0.mcap"
     file.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])

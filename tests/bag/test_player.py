@@ -63,7 +63,7 @@ class Listener:
 
 
 async def reading() -> None:
-    """Let the player's thread read, and everything settle."""
+    """Wait until the player's thread has read and everything has settled."""
     for _ in range(3):
         await settle()
 
@@ -92,7 +92,7 @@ async def test_messages_are_played_at_their_times(tmp_path: Path) -> None:
 
 
 async def test_a_paused_player_publishes_one_by_one(tmp_path: Path) -> None:
-    """By rosbag2's services, as its users are used to."""
+    """With rosbag2's services, which its users know."""
     record(tmp_path / "run", "a", "b", "c", "d")
     clock = ManualClock()
     async with local_context(clock=clock) as context, Node("ear", context=context) as node:
@@ -135,7 +135,7 @@ async def test_a_player_seeks_and_goes_on_there(tmp_path: Path) -> None:
 
 
 async def test_a_player_loops_until_it_is_stopped(tmp_path: Path) -> None:
-    """As for a demonstration."""
+    """As in a demonstration."""
     record(tmp_path / "run", "a", "b")
     clock = ManualClock()
     async with local_context(clock=clock) as context, Node("ear", context=context) as node:
@@ -204,7 +204,7 @@ async def test_publishers_have_the_recorded_qos(tmp_path: Path) -> None:
 
 
 async def test_a_rate_that_is_not_positive_is_refused(tmp_path: Path) -> None:
-    """Time would stand still or run backward; the service answers so as well."""
+    """Time would stand still or run backward; the service refuses it as well."""
     record(tmp_path / "run", "a")
     async with (
         local_context() as context,
@@ -220,7 +220,7 @@ async def test_a_rate_that_is_not_positive_is_refused(tmp_path: Path) -> None:
 
 
 async def test_the_service_plays_from_an_offset(tmp_path: Path) -> None:
-    """Its request has the offset as a time, as rosbag2 defined it."""
+    """Its request gives the offset as a time, as in rosbag2."""
     record(tmp_path / "run", "a", "b", "c")
     heard: list[str] = []
     async with (
@@ -238,7 +238,7 @@ async def test_the_service_plays_from_an_offset(tmp_path: Path) -> None:
 
 
 async def test_requests_are_sent_as_by_their_client(tmp_path: Path) -> None:
-    """A recording asks the services and actions of today what the robot's nodes once asked."""
+    """Playing a recording sends its requests and goals to the current servers."""
     contents = ServiceIntrospectionState.CONTENTS
     sums: list[int] = []
     orders: list[int] = []
@@ -291,7 +291,7 @@ async def test_requests_are_sent_as_by_their_client(tmp_path: Path) -> None:
 async def test_a_request_that_nobody_serves_is_named(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It is not kept for a server that comes later, as its time is over then."""
+    """It is not kept for a server that appears later, when its time has passed."""
     event = AddTwoInts.Event(request=[AddTwoInts.Request(a=2)])
     event.info.event_type = 1
     with bag.BagWriter(tmp_path / "run") as out:
@@ -327,7 +327,7 @@ async def test_messages_are_played_in_the_order_in_which_they_were_sent(tmp_path
 
 
 async def test_the_next_file_is_told(tmp_path: Path) -> None:
-    """On rosbag2's topic; after seeking, too."""
+    """On rosbag2's topic, also after seeking."""
     with bag.BagWriter(tmp_path / "run", max_messages=1) as out:
         for second in (1, 2, 3):
             out.write_message("/words", String(data=str(second)), at(second))
@@ -347,7 +347,7 @@ async def test_the_next_file_is_told(tmp_path: Path) -> None:
 
 
 async def test_the_clock_is_published_with_the_messages_of_a_topic(tmp_path: Path) -> None:
-    """Nodes in simulated time then see no time between the messages."""
+    """So that nodes in simulated time see no time between messages."""
     record(tmp_path / "run", "a", "b")
     async with local_context() as context, Node("ear", context=context) as node:
         times: list[int] = []
@@ -361,7 +361,7 @@ async def test_the_clock_is_published_with_the_messages_of_a_topic(tmp_path: Pat
 
 
 async def test_a_damaged_file_ends_playing_with_its_error(tmp_path: Path) -> None:
-    """It is the error of `open` and `read`, and no group of errors."""
+    """The error is that of `open` and `read`, not an ExceptionGroup."""
     record(tmp_path / "run", "a", "b")
     file = tmp_path / "run" / "run_0.mcap"
     data = bytearray(file.read_bytes())

@@ -1,4 +1,4 @@
-"""The recorder: what is published is in the bag, or is counted as lost."""
+"""The recorder: each published message is in the bag or counted as lost."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ async def test_a_topic_that_appears_later_is_recorded(tmp_path: Path) -> None:
 
 
 async def test_a_message_can_be_recorded_without_being_published(tmp_path: Path) -> None:
-    """A program's own data need not travel."""
+    """A program can record its own data without sending it."""
     async with (
         local_context() as context,
         bag.Recorder(tmp_path / "run", topics=[], context=context) as recorder,
@@ -82,7 +82,7 @@ async def test_a_message_can_be_recorded_without_being_published(tmp_path: Path)
 
 
 async def test_nothing_is_recorded_while_the_recorder_is_paused(tmp_path: Path) -> None:
-    """rosbag2's service pauses it, as the key does."""
+    """rosbag2's service pauses it, like the key."""
     async with local_context() as context, Node("talker", context=context) as node:
         words = node.create_publisher(String, "words", 10)
         async with bag.Recorder(tmp_path / "run", context=context, start_paused=True) as recorder:
@@ -97,7 +97,7 @@ async def test_nothing_is_recorded_while_the_recorder_is_paused(tmp_path: Path) 
 
 
 async def test_a_snapshot_has_the_last_messages_and_the_latched_ones(tmp_path: Path) -> None:
-    """What led to an event is written when it has happened, with the map of that time."""
+    """What led to an event is written after it, together with the map."""
     async with local_context() as context, Node("talker", context=context) as node:
         maps = node.create_publisher(String, "map", LATCHED)
         words = node.create_publisher(String, "words", 10)
@@ -114,7 +114,7 @@ async def test_a_snapshot_has_the_last_messages_and_the_latched_ones(tmp_path: P
 
 
 async def test_messages_that_the_disk_is_too_slow_for_are_counted(tmp_path: Path) -> None:
-    """A recorder without a limit would take the memory of the robot."""
+    """A recorder without a limit would use up the robot's memory."""
     async with local_context() as context, Node("talker", context=context) as node:
         words = node.create_publisher(String, "words", 100)
         async with bag.Recorder(tmp_path / "run", context=context, cache_bytes=30) as recorder:
@@ -128,7 +128,7 @@ async def test_messages_that_the_disk_is_too_slow_for_are_counted(tmp_path: Path
 
 
 async def test_both_types_of_a_topic_whose_type_changes_are_recorded(tmp_path: Path) -> None:
-    """A node that is started in a new version must not end the recording."""
+    """A node restarted in a new version must not end the recording."""
     async with (
         local_context() as context,
         Node("talker", context=context) as node,
@@ -146,7 +146,7 @@ async def test_both_types_of_a_topic_whose_type_changes_are_recorded(tmp_path: P
 async def test_a_topic_of_an_unknown_type_is_named_once_and_the_rest_is_recorded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Its bytes would be of no use to anybody without a definition."""
+    """Its bytes would be useless without a definition."""
     known = Node.find_type
 
     async def find_type(self: Node, typename: str, **options: Any) -> Any:
@@ -171,7 +171,7 @@ async def test_a_topic_of_an_unknown_type_is_named_once_and_the_rest_is_recorded
 
 
 class Walk(ActionType, typename="foreign_msgs/action/Walk", by_name=False):
-    """An action of another program: nothing here finds it by name."""
+    """An action that is not found by name, as if another program had it."""
 
     class Goal(Message):
         """How far."""
@@ -190,7 +190,7 @@ class Walk(ActionType, typename="foreign_msgs/action/Walk", by_name=False):
 async def test_the_feedback_of_an_action_that_only_its_node_knows_is_recorded(
     tmp_path: Path,
 ) -> None:
-    """The node describes the message, as it does those of its other topics."""
+    """The node describes it, like the types of its other topics."""
 
     async def walk(goal: Any) -> Walk.Result:
         goal.publish_feedback(Walk.Feedback(metres=0.25))
@@ -212,7 +212,7 @@ async def test_the_feedback_of_an_action_that_only_its_node_knows_is_recorded(
 async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Simulations start again, and computers without a battery get their time from the network."""
+    """Simulations restart, and computers without a battery get their time from the network."""
     async with local_context() as context, Node("talker", context=context) as node:
         words = node.create_publisher(String, "words", 10)
         clock = node.create_publisher(Clock, "/clock", 10)
@@ -234,7 +234,7 @@ async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(
 async def test_a_message_without_a_credible_stamp_is_recorded_with_the_time_of_its_arrival(
     tmp_path: Path,
 ) -> None:
-    """A publisher may stamp as it likes, before 1970 as well; a bag has no place for that."""
+    """A publisher may set any stamp, even one before 1970, which a bag cannot store."""
     async with (
         local_context() as context,
         bag.Recorder(tmp_path / "run", topics=["/words"], context=context) as recorder,
@@ -255,7 +255,7 @@ async def test_a_message_without_a_credible_stamp_is_recorded_with_the_time_of_i
 async def test_a_split_at_the_end_of_a_recording_is_no_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The node has ended when the last rows are written; nobody can be told of the file then."""
+    """The node has ended when the last rows are written, so the new file cannot be announced."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
     async with local_context() as context:
         async with bag.Recorder(
@@ -272,7 +272,7 @@ async def test_a_split_at_the_end_of_a_recording_is_no_error(
 async def test_a_large_message_is_recorded_as_it_was_published_and_again_in_each_file(
     compression: str, tmp_path: Path
 ) -> None:
-    """Its array is written from where it is, and the program may go on with it at once."""
+    """Its array is not copied first, and the program may modify it at once."""
     array = np.arange(100_000, dtype=np.float64)
     wanted = cdr.encode(Float64MultiArray(data=array))
     async with local_context() as context, Node("map", context=context) as node:
@@ -294,7 +294,7 @@ async def test_a_large_message_is_recorded_as_it_was_published_and_again_in_each
 async def test_a_message_of_several_middling_parts_is_compressed_as_a_small_one(
     tmp_path: Path,
 ) -> None:
-    """None of its arrays alone is worth a try, and a sample of one says nothing of the rest."""
+    """No single array is large enough to try, and a sample of one says nothing about the rest."""
     joints = JointState(position=np.zeros(6000), velocity=np.zeros(6000), effort=np.zeros(6000))
     async with local_context() as context, Node("arm", context=context) as node:
         arm = node.create_publisher(JointState, "arm", 10)
@@ -324,7 +324,7 @@ async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
 
 
 async def test_an_error_of_the_block_is_raised_as_it_is(tmp_path: Path) -> None:
-    """A program catches its own errors, and not groups of them."""
+    """A program catches its own errors, not groups of them."""
     async with local_context() as context:
         with pytest.raises(KeyError, match="mine"):
             async with bag.Recorder(tmp_path / "run", topics=[], context=context):
@@ -332,7 +332,7 @@ async def test_an_error_of_the_block_is_raised_as_it_is(tmp_path: Path) -> None:
 
 
 async def test_a_folder_that_cannot_be_made_is_one_clear_error(tmp_path: Path) -> None:
-    """Before anything is recorded, and not at the end."""
+    """Before anything is recorded, not at the end."""
     (tmp_path / "file").touch()
     async with local_context() as context:
         with pytest.raises(BagWriteError, match="file/run"):
@@ -343,7 +343,7 @@ async def test_a_folder_that_cannot_be_made_is_one_clear_error(tmp_path: Path) -
 async def test_a_recording_whose_folder_is_removed_says_so_at_the_next_sync(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The open file takes bytes without an error, and all of them are gone when it is closed."""
+    """The open file accepts bytes without an error, and they are gone when it is closed."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
     async with local_context() as context:
         recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
@@ -358,7 +358,7 @@ async def test_a_recording_whose_folder_is_removed_says_so_at_the_next_sync(
 
 @pytest.mark.parametrize("removed", ["run", "run/run_0.mcap", "run/run_1.mcap"])
 async def test_what_was_removed_is_counted_as_lost_at_the_end(removed: str, tmp_path: Path) -> None:
-    """Nobody may believe that there is a bag; an earlier file of it counts, too."""
+    """Nobody should believe that there is a bag; messages in earlier files count as well."""
     async with local_context() as context:
         recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
         with pytest.raises(BagWriteError, match="the file was removed"):  # noqa: PT012  # leaving raises
@@ -379,7 +379,7 @@ async def test_what_was_removed_is_counted_as_lost_at_the_end(removed: str, tmp_
 async def test_a_disk_that_is_full_at_the_sync_is_called_full(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Some file systems find out no earlier."""
+    """Some file systems notice it only then."""
 
     def is_full(fd: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -408,7 +408,7 @@ def test_a_limit_of_files_without_a_limit_of_one_file_is_refused() -> None:
 
 
 def mount_in(folder: Path) -> list[str]:
-    """Return how to run a command with a small disk, which is full after 300 kB, as a folder."""
+    """Return the command prefix that mounts a disk of 300 kB as a folder."""
     folder.mkdir()
     mount = f"mount -t tmpfs -o size=300k tmpfs {shlex.quote(str(folder))}"
     tried = subprocess.run(
@@ -420,7 +420,7 @@ def mount_in(folder: Path) -> list[str]:
 
 
 def limit_files() -> None:
-    """Let the files of this process be no larger than 300 kB."""
+    """Limit the files of this process to 300 kB."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
@@ -477,7 +477,7 @@ def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(
 async def test_a_power_cut_takes_only_what_came_after_the_last_sync(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The file is as long then as when the disk last confirmed it, or goes on with zeros."""
+    """The file then has its length of the last sync, or continues with zeros."""
     synced = asyncio.Event()
     loop = asyncio.get_running_loop()
     sizes: list[int] = []
@@ -507,7 +507,7 @@ async def test_a_power_cut_takes_only_what_came_after_the_last_sync(
 
 
 def test_a_recorder_that_is_killed_loses_only_what_is_not_on_the_disk_yet(tmp_path: Path) -> None:
-    """SIGKILL leaves a file without an end; `check` brings back what was written before."""
+    """SIGKILL leaves a file without its end; `check` recovers what was written."""
     program = textwrap.dedent("""
         import asyncio, os, signal, sys
         from pathlib import Path

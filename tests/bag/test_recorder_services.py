@@ -1,4 +1,4 @@
-"""rosbag2's services and topics of a recorder, with Lyrical's definitions and those before."""
+"""A recorder's services and topics as in rosbag2, with Lyrical's and earlier definitions."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ async def asked(node: Node, srv_type: Any, name: str, **fields: Any) -> Any:
 
 @pytest.mark.usefixtures("lyrical")
 async def test_a_recorder_is_stopped_and_records_again_elsewhere(tmp_path: Path) -> None:
-    """One process records many runs of a robot, which ask for it."""
+    """One process records many runs of a robot, on request."""
     async with local_context() as context, Node("talker", context=context) as node:
         words = node.create_publisher(String, "words", 10)
         async with bag.Recorder(tmp_path / "one", topics=["/words"], context=context) as recorder:
@@ -65,7 +65,7 @@ async def test_a_recorder_is_stopped_and_records_again_elsewhere(tmp_path: Path)
 
 @pytest.mark.usefixtures("lyrical")
 async def test_a_recording_is_split_and_resumed_at_given_times(tmp_path: Path) -> None:
-    """By the node's time, and by the times of the messages of one topic."""
+    """By the node's time, or by the times of one topic's messages."""
     clock = ManualClock(Time(seconds=100))
     async with local_context(clock=clock) as context, Node("talker", context=context) as node:
         splits: list[WriteSplitEvent] = []
@@ -96,7 +96,7 @@ async def test_a_recording_is_split_and_resumed_at_given_times(tmp_path: Path) -
 
 
 async def test_losses_are_told_and_are_in_the_bag(tmp_path: Path) -> None:
-    """While it records, on rosbag2's topic, and afterwards, as `aionode bag info` shows."""
+    """On rosbag2's topic while it records, and by `aionode bag info` afterwards."""
     clock = ManualClock()
     async with local_context(clock=clock) as context, Node("talker", context=context) as node:
         events: list[MessagesLostEvent] = []
@@ -122,7 +122,7 @@ async def test_losses_are_told_and_are_in_the_bag(tmp_path: Path) -> None:
 
 
 def test_the_services_of_jazzy_and_kilted_have_no_fields() -> None:
-    """With ROS_DISTRO=jazzy, their clients stop and split a recorder as they always did."""
+    """With ROS_DISTRO=jazzy, clients of that release can stop and split a recorder."""
     empty = define("old_msgs/msg/Empty", "")
     assert when(empty(), "split") == (None, 0, "")
     response = empty()
@@ -130,7 +130,7 @@ def test_the_services_of_jazzy_and_kilted_have_no_fields() -> None:
 
 
 async def test_a_stopped_recorder_refuses_messages(tmp_path: Path) -> None:
-    """They would be lost without a word."""
+    """Otherwise they would be lost silently."""
     from aionode.errors import BagError
 
     async with (

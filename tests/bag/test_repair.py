@@ -31,7 +31,7 @@ def record(path: Path, count: int = 3, topic: str = "/words", first_s: int = 1) 
 
 
 def numbers(path: Path) -> list[int]:
-    """Return the numbers that are in a bag."""
+    """Return the numbers in a bag."""
     with bag.open(path) as run:
         return [each.message.data for each in run.read("/numbers")]
 
@@ -40,7 +40,7 @@ def numbers(path: Path) -> list[int]:
 def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
     step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A power cut ends a file anywhere; only what was not on the disk is lost."""
+    """A power cut can end a file anywhere; only what was not on the disk is lost."""
     monkeypatch.setattr("os.fdatasync", lambda fd: None)  # thousands of them take half a minute
     record(tmp_path / "run")
     file = tmp_path / "run" / "run_0.mcap"
@@ -66,7 +66,7 @@ def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
 def test_a_file_that_has_hardly_begun_is_made_an_empty_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A recorder that dies at once leaves a few bytes; the other files of the bag are read then."""
+    """A recorder that dies at once leaves a few bytes, and the bag's other files stay readable."""
     monkeypatch.setattr("os.fdatasync", lambda fd: None)
     with bag.BagWriter(tmp_path / "run"):
         pass
@@ -96,7 +96,7 @@ def test_a_tail_of_zeros_is_cut_off(tmp_path: Path) -> None:
 
 
 def test_a_bag_without_metadata_gets_new_ones(tmp_path: Path) -> None:
-    """rosbag2 writes them only at the end."""
+    """rosbag2 writes the metadata only at the end."""
     record(tmp_path / "run")
     (tmp_path / "run" / "metadata.yaml").unlink()
     with pytest.raises(BagError, match="aionode bag reindex"):
@@ -107,7 +107,7 @@ def test_a_bag_without_metadata_gets_new_ones(tmp_path: Path) -> None:
 
 
 def test_a_whole_bag_is_left_as_it_is(tmp_path: Path) -> None:
-    """Checking costs nothing, and changes nothing."""
+    """Checking an intact bag changes nothing."""
     record(tmp_path / "run")
     before = {file: file.read_bytes() for file in (tmp_path / "run").iterdir()}
     (found,) = bag.check(tmp_path / "run")
@@ -116,7 +116,7 @@ def test_a_whole_bag_is_left_as_it_is(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_no_mcap_file_is_refused(tmp_path: Path) -> None:
-    """There is nothing to save, and nothing may be destroyed."""
+    """There is nothing to recover, and nothing may be destroyed."""
     file = tmp_path / "x.mcap"
     file.write_bytes(b"hello, world")
     with pytest.raises(BagError, match="nothing can be recovered"):
@@ -125,7 +125,7 @@ def test_a_file_that_is_no_mcap_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_piece_is_cut_out_of_a_bag(tmp_path: Path) -> None:
-    """Without a YAML file, which rosbag2 wants for that."""
+    """Without the YAML file that rosbag2 requires."""
     record(tmp_path / "run")
     start, end = Duration(seconds=1), Duration(seconds=2)
     count = bag.cut(tmp_path / "run", tmp_path / "piece", start=start, end=end, topics=["/words"])
@@ -135,7 +135,7 @@ def test_a_piece_is_cut_out_of_a_bag(tmp_path: Path) -> None:
 
 
 def test_bags_are_merged_in_order_of_time(tmp_path: Path) -> None:
-    """Two computers of one robot have recorded at the same time."""
+    """Two computers of one robot may record at the same time."""
     record(tmp_path / "one", topic="/one")
     record(tmp_path / "two", topic="/two", first_s=2)
     assert bag.merge([tmp_path / "two", tmp_path / "one"], tmp_path / "both") == 12
@@ -156,7 +156,7 @@ def test_a_bag_is_converted_to_another_compression(tmp_path: Path) -> None:
 def test_what_did_not_fit_does_not_take_the_space_of_the_metadata(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A full disk has a reserve for the summary and the metadata, and for nothing else."""
+    """The space reserved for summary and metadata on a full disk is used for nothing else."""
     writes = mcap_writer.write_all
     full = [True]
 

@@ -1,4 +1,4 @@
-"""A recording runs through nodes in stepped time, and what they publish is the same each time."""
+"""Nodes that process a recording in stepped time publish the same in each run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SIM_TIME = Parameter("use_sim_time", value=True)
 
 
 def write(path: Path, messages: Iterable[tuple[str, Any, int]]) -> Path:
-    """Write a bag of messages with their topics, at times in milliseconds after its start."""
+    """Write a bag of messages with topics and times, in milliseconds after its start."""
     with bag.BagWriter(path) as writer:
         for topic, message, at_ms in messages:
             writer.write_message(topic, message, Time(nanoseconds=START_NS + at_ms * MS))
@@ -41,7 +41,7 @@ def write(path: Path, messages: Iterable[tuple[str, Any, int]]) -> Path:
 
 @pytest.fixture
 def numbers(tmp_path: Path) -> Path:
-    """A bag with ten numbers, one each 100 ms."""
+    """A bag with ten numbers, one every 100 ms."""
     return write(tmp_path / "run", [("/x", Float64(data=float(i)), 100 * i) for i in range(10)])
 
 
@@ -64,7 +64,7 @@ class Doubler(Node):
 async def play(
     path: Path, make: Callable[[Node, Callable[[str], None]], None], record: str = "/out"
 ) -> Outputs:
-    """Play a bag to a node that `make` gives its entities; it gets a function that publishes."""
+    """Play a bag to a node whose entities `make` creates; `make` is passed a publish function."""
     async with bag.replay(path) as run:
         node = Node("node", context=run.context)
         publisher = node.create_publisher(String, record, 100)
@@ -78,7 +78,7 @@ def texts(outputs: Outputs) -> list[str]:
 
 
 async def test_each_message_is_published_at_its_own_time(numbers: Path) -> None:
-    """Nodes see the times of the robot, not those of the test."""
+    """Nodes see the robot's times, not those of the test."""
     async with bag.replay(numbers) as run:
         Doubler(context=run.context)
         outputs = await run.play(record=["/y"])
@@ -88,7 +88,7 @@ async def test_each_message_is_published_at_its_own_time(numbers: Path) -> None:
 
 
 async def test_nodes_without_a_context_join_the_run(numbers: Path) -> None:
-    """Nodes as users write them take no context."""
+    """Nodes written by users take no context argument."""
     async with bag.replay(numbers) as run:
         Doubler()
         outputs = await run.play(record=["y"])
@@ -97,7 +97,7 @@ async def test_nodes_without_a_context_join_the_run(numbers: Path) -> None:
 
 
 async def test_timers_sleeps_timeouts_and_threads_follow_the_recording(numbers: Path) -> None:
-    """Whatever a node waits for takes as long as on the robot, and no time of the test."""
+    """Each wait takes as long as on the robot in stepped time, and no real time."""
 
     def make(node: Node, say: Callable[[str], None]) -> None:
         async def work() -> None:
@@ -124,7 +124,7 @@ async def test_timers_sleeps_timeouts_and_threads_follow_the_recording(numbers: 
 
 
 async def test_services_and_actions_follow_the_recording(numbers: Path) -> None:
-    """A goal takes as long as on the robot, and has the same id in each run."""
+    """A goal takes as long as on the robot, and its id is the same in each run."""
     ids: list[bytes] = []
 
     def make(node: Node, say: Callable[[str], None]) -> None:
@@ -161,7 +161,7 @@ async def test_services_and_actions_follow_the_recording(numbers: Path) -> None:
 async def test_a_goal_is_sent_while_the_recording_plays(
     replay_bag: Callable[..., bag.Replay], numbers: Path
 ) -> None:
-    """The node under test serves it, and the test is its client, at a time of the recording."""
+    """The node under test serves it; the test sends it at a time of the recording."""
     done: list[int] = []
 
     async with replay_bag(numbers) as run:
@@ -187,7 +187,7 @@ async def test_a_goal_is_sent_while_the_recording_plays(
 
 
 async def test_simulated_time_follows_the_clock_in_the_recording(tmp_path: Path) -> None:
-    """A bag of a simulation has /clock, and nodes with use_sim_time go by it."""
+    """A bag of a simulation contains /clock, which nodes with use_sim_time follow."""
     ticks = [ClockMsg(clock=Time(nanoseconds=i * 500 * MS).to_msg()) for i in range(5)]
     path = write(tmp_path / "sim", [("/clock", tick, 10 * i) for i, tick in enumerate(ticks)])
     async with bag.replay(path) as run:
@@ -203,7 +203,7 @@ async def test_simulated_time_follows_the_clock_in_the_recording(tmp_path: Path)
 
 
 async def test_what_is_recorded_is_not_played_as_well(tmp_path: Path) -> None:
-    """The recording of a robot has what its nodes published, too."""
+    """A recording of a robot also contains what the nodes under test published."""
     path = write(tmp_path / "run", [("/x", Float64(data=1.0), 0), ("/y", Float64(data=9.0), 1)])
     async with bag.replay(path) as run:
         Doubler(context=run.context)
@@ -213,7 +213,7 @@ async def test_what_is_recorded_is_not_played_as_well(tmp_path: Path) -> None:
 
 
 async def test_a_failing_callback_ends_the_run_with_its_error(numbers: Path) -> None:
-    """A test must fail when a node does."""
+    """A test must fail when a node fails."""
 
     def fail(_: Float64) -> None:
         raise ZeroDivisionError
@@ -227,7 +227,7 @@ async def test_a_failing_callback_ends_the_run_with_its_error(numbers: Path) -> 
 
 
 async def test_an_error_of_the_test_comes_out_as_it_is(numbers: Path) -> None:
-    """An assertion in the block is reported as any other."""
+    """An assertion in the block is reported like any other."""
     with pytest.raises(AssertionError, match="as it is"):  # noqa: PT012  # as above
         async with bag.replay(numbers) as run:
             Doubler(context=run.context)
@@ -236,7 +236,7 @@ async def test_an_error_of_the_test_comes_out_as_it_is(numbers: Path) -> None:
 
 
 async def test_a_topic_that_nobody_publishes_is_an_error(numbers: Path) -> None:
-    """A name with a mistake in it would record nothing, and every comparison would succeed."""
+    """A misspelled name would record nothing, and every comparison would succeed."""
     with pytest.raises(BagError, match="no node of the run publishes /cmd; "):  # noqa: PT012  # as above
         async with bag.replay(numbers) as run:
             Doubler(context=run.context)
@@ -245,7 +245,7 @@ async def test_a_topic_that_nobody_publishes_is_an_error(numbers: Path) -> None:
 
 @pytest.mark.skipif(sys.version_info < (3, 12), reason="nothing is watched there")
 async def test_the_first_use_of_the_machines_time_is_named(numbers: Path) -> None:
-    """What differs in each run is hard to find in the outputs."""
+    """The cause of a difference between runs is hard to find in the outputs."""
 
     def make(node: Node, say: Callable[[str], None]) -> None:
         node.create_timer(0.1, lambda: say(str(time.time())))  # nodes of users do
@@ -258,7 +258,7 @@ async def test_the_first_use_of_the_machines_time_is_named(numbers: Path) -> Non
 
 
 async def test_outputs_can_be_saved_and_read(numbers: Path, tmp_path: Path) -> None:
-    """What was right once is what later runs are compared with."""
+    """Later runs are compared with a result that was right once."""
     async with bag.replay(numbers) as run:
         Doubler(context=run.context)
         outputs = await run.play(record=["/y"])
@@ -269,7 +269,7 @@ async def test_outputs_can_be_saved_and_read(numbers: Path, tmp_path: Path) -> N
 
 
 def test_another_process_with_other_hashes_publishes_the_same(numbers: Path) -> None:
-    """The order of sets and the addresses of objects differ in each process."""
+    """The order of sets and the addresses of objects differ between processes."""
     digests = {
         subprocess.run(  # the program below
             [sys.executable, "-c", PROGRAM, str(numbers), loop],

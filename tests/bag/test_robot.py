@@ -1,4 +1,4 @@
-"""The robot of examples/replay publishes the same in each process, whatever the machine does."""
+"""The robot of examples/replay publishes the same in each process, however busy the machine is."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def digest_in_process(path: Path, seed: int, loop: str, python: str = sys.execut
 
 
 async def test_a_changed_constant_is_found_and_named(tmp_path: Path) -> None:
-    """A test that fails says where to look: the topic, the time and the field."""
+    """A failing test says where to look: the topic, the time and the field."""
     path = record(tmp_path / "run", seconds=2)
     (await run_robot(path)).save(tmp_path / "golden")
 
@@ -55,7 +55,7 @@ async def test_a_changed_constant_is_found_and_named(tmp_path: Path) -> None:
 
 
 def test_each_process_publishes_the_same(tmp_path: Path) -> None:
-    """The hashes of strings and the addresses of objects are others in each process."""
+    """The hashes of strings and the addresses of objects differ between processes."""
     path = record(tmp_path / "run", seconds=3)
 
     runs = [(1, "asyncio"), (2, "uvloop")]
@@ -67,7 +67,7 @@ def test_each_process_publishes_the_same(tmp_path: Path) -> None:
 @pytest.mark.stress
 @pytest.mark.timeout(3000)
 def test_a_hundred_processes_publish_the_same_on_a_busy_machine(tmp_path: Path) -> None:
-    """On asyncio and uvloop, with each Python that is named, while others use the processor."""
+    """On asyncio and uvloop, with each given Python, while other processes use the processor."""
     path = record(tmp_path / "run")
     spin = [sys.executable, "-c", "while True: pass"]
     busy = [subprocess.Popen(spin) for _ in range(os.cpu_count() or 1)]  # as above

@@ -1,6 +1,6 @@
 """Files laid out as rosbag2's own storage plugins do, in each version, are read and played.
 
-The tables are those that rosbag2 creates, and the records those that its MCAP plugin writes.
+The tables are those of rosbag2, and the records those of its MCAP plugin.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ NAMES = [
 
 
 def metadata(version: int, storage: str, file: str) -> str:
-    """Return ``metadata.yaml`` as rosbag2 has written it in a version."""
+    """Return ``metadata.yaml`` as a given version of rosbag2 writes it."""
     span = {
         "starting_time": {"nanoseconds_since_epoch": START_NS},
         "duration": {"nanoseconds": STEP_NS * (len(TEXTS) - 1)},
@@ -151,7 +151,7 @@ def make_mcap(folder: Path, **options: Any) -> None:
 
 
 async def play(folder: Path) -> list[str]:
-    """Play a bag, and return what a node hears."""
+    """Play a bag, and return what a node receives."""
     heard: list[str] = []
     async with local_context() as context, Node("ear", context=context) as node:
         node.create_subscription(String, "/words", lambda msg: heard.append(msg.data), 10)
@@ -166,7 +166,7 @@ async def play(folder: Path) -> list[str]:
 async def test_sqlite3_of_every_version_of_rosbag2_is_played(
     schema: int, version: int, tmp_path: Path
 ) -> None:
-    """Robots record for years, and their old bags are what tests are made of."""
+    """Old bags of robots are still used in tests."""
     make_sqlite3(tmp_path / "old", schema, version)
     assert await play(tmp_path / "old") == TEXTS
     with bag.open(tmp_path / "old") as run:
@@ -187,7 +187,7 @@ async def test_sqlite3_of_every_version_of_rosbag2_is_played(
     ids=["default", "zstd_fast", "fastwrite"],
 )
 async def test_mcap_as_rosbag2_writes_it_is_played(options: Any, tmp_path: Path) -> None:
-    """With its presets: `fastwrite` has no chunks, and so no index of its messages."""
+    """With its presets: `fastwrite` has no chunks, hence no index of messages."""
     make_mcap(tmp_path / "run", **options)
     assert await play(tmp_path / "run") == TEXTS
     with bag.open(tmp_path / "run") as run:

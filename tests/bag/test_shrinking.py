@@ -24,7 +24,7 @@ S = 1_000_000_000
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """A bag of five topics with a message of each in each of 60 seconds."""
+    """A bag of 60 seconds with a message of each of five topics per second."""
     with bag.BagWriter(tmp_path / "run") as writer:
         for second in range(60):
             for topic in "abcde":
@@ -34,7 +34,7 @@ def path(tmp_path: Path) -> Path:
 
 
 async def test_the_piece_has_only_what_the_failure_needs(path: Path) -> None:
-    """Two topics and three seconds in the middle, of five and sixty."""
+    """Two of five topics, and three of sixty seconds."""
 
     async def fail(piece: Piece) -> bool:
         return (
@@ -49,7 +49,7 @@ async def test_the_piece_has_only_what_the_failure_needs(path: Path) -> None:
 
 
 async def test_a_command_that_succeeds_is_an_error(path: Path) -> None:
-    """Or the search would end with all of the bag, as if it needed all."""
+    """Otherwise the search would end with the whole bag, as if all of it were needed."""
 
     async def succeed(_: Piece) -> bool:
         return False
@@ -61,7 +61,7 @@ async def test_a_command_that_succeeds_is_an_error(path: Path) -> None:
 async def test_a_replay_reads_the_piece_in_the_environment(
     path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The test names its bag as always, and no file is written."""
+    """The test names its bag as usual, and no file is written."""
     piece = Piece(path=str(path.resolve()), start_ns=30 * S, end_ns=33 * S, topics=["/b"])
     monkeypatch.setenv(PIECE_VARIABLE, msgspec.json.encode(piece).decode())
     seen: list[float] = []
@@ -77,7 +77,7 @@ async def test_a_replay_reads_the_piece_in_the_environment(
 
 
 async def test_the_status_of_a_command_says_whether_it_fails(path: Path) -> None:
-    """A run of pytest without a test is no failure of the test."""
+    """A pytest run that collects no test is not a failed test."""
     piece = Piece(path=str(path), start_ns=0, end_ns=1, topics=[])
 
     def leaving(status: int) -> list[str]:

@@ -1,4 +1,4 @@
-"""Names in bags that ROS does not allow: shown escaped, left out, and the rest goes on."""
+"""Names in bags that ROS does not allow are shown escaped and left out; the rest is used."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def strange_bag(file: Path) -> Path:
 def test_a_name_in_a_bag_forges_no_line_and_no_colour(
     options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Also in a pipe: a program may read the lines."""
+    """Even in a pipe, as a program may read the lines."""
     main(["bag", "info", str(strange_bag(tmp_path / "x.mcap")), *options])
     out = capsys.readouterr().out
     assert "\x1b" not in out
@@ -61,7 +61,7 @@ async def test_a_topic_that_no_node_can_have_is_not_played_and_the_rest_is(
 
 
 async def test_a_topic_that_no_node_can_have_is_left_out_of_a_replay(tmp_path: Path) -> None:
-    """As where it is played."""
+    """As when it is played."""
     async with bag.replay(strange_bag(tmp_path / "x.mcap")) as run:
         heard: list[str] = []
         node = Node("ear", context=run.context)

@@ -1,4 +1,4 @@
-"""The thread that writes a recording: in time, within its bounds, and exact about what it lost."""
+"""The thread that writes a recording is timely, bounded and exact about losses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROW = Row(0, 1, 1, 1, 4, b"0123")
 
 
 def thread_of(writer: BagWriter, *, snapshot: bool = False) -> WriterThread:
-    """Return the thread of a bag with one topic, which takes rows without a limit in bytes."""
+    """Return the writer thread of a bag with one topic, without a limit in bytes."""
     return WriterThread(
         writer,
         [(topic_info("/x", String), 0)],
@@ -30,13 +30,13 @@ def thread_of(writer: BagWriter, *, snapshot: bool = False) -> WriterThread:
 
 
 class Endless(BagWriter):
-    """A bag to which another row comes with each that is written, until the disk is asked."""
+    """A bag that gets another row with each row written, until it is synced."""
 
     thread: WriterThread
     synced = False
 
     def write(self, *args: object, **kwargs: object) -> None:
-        """Put another row, unless that has gone on for too long."""
+        """Put another row, unless this has gone on for too long."""
         super().write(*args, **kwargs)  # type: ignore[arg-type]  # as they come
         if not self.synced and self.message_count < 5000:
             self.thread.put(ROW)
@@ -49,7 +49,7 @@ class Endless(BagWriter):
 def test_the_disk_confirms_in_time_although_more_comes_all_the_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On a busy machine the thread may never see an end, and a power cut would take all of it."""
+    """On a busy machine the queue may never be empty, and a power cut would lose everything."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
     writer = Endless(tmp_path / "run")
     writer.thread = thread_of(writer)
@@ -70,7 +70,7 @@ class Full(BagWriter):
 def test_rows_that_wait_when_the_disk_is_found_full_at_the_end_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On a busy machine the thread has not begun when the recording ends."""
+    """On a busy machine the thread may not have begun when the recording ends."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
     thread = thread_of(Full(tmp_path / "run"))
     for _ in range(10):
@@ -83,7 +83,7 @@ def test_rows_that_wait_when_the_disk_is_found_full_at_the_end_are_counted(
 def test_no_more_than_a_number_of_small_messages_waits_or_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Empty messages have few bytes, and take memory all the same."""
+    """Even empty messages take memory."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
     monkeypatch.setattr("aionode.bag.recording.writer_thread.MOST_ROWS", 3)
     thread = thread_of(BagWriter(tmp_path / "waiting"))
@@ -105,7 +105,7 @@ def test_no_more_than_a_number_of_small_messages_waits_or_is_kept(
 def test_large_messages_are_written_in_pieces(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A long call may keep the event loop from its processor; any call may end early."""
+    """A long call may keep the event loop from running, and any call may write less."""
     plain, sizes = os.writev, []
 
     def writev(fd: int, pieces: list[memoryview]) -> int:
