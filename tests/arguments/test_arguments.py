@@ -37,7 +37,7 @@ def parse(line: str, **files: str) -> Arguments:
 
 
 def test_only_what_stands_in_a_block_is_read() -> None:
-    """Several blocks, and a `--` that may be left out at the end."""
+    """There may be several blocks, and the last one needs no `--`."""
     args = parse("prog -r x --ros-args -p a:=1 -- -p b:=2 --ros-args -p c:=3")
 
     assert [rule.name for rule in args.parameter_rules] == ["a", "c"]
@@ -72,7 +72,7 @@ def test_a_double_dash_outside_of_a_block_is_the_programs() -> None:
     ],
 )
 def test_removing_ros_args_leaves_the_programs_own(line: str, own: list[str]) -> None:
-    """For argparse and the like; it never raises."""
+    """For argparse and similar parsers; it never raises."""
     assert remove_ros_args(line.split()) == own
 
 
@@ -130,7 +130,7 @@ def test_a_log_level_is_for_all_or_for_one_logger_and_the_last_wins() -> None:
 
 
 def test_the_remaining_flags_take_their_word_as_it_is() -> None:
-    """The last one counts."""
+    """The last one wins."""
     args = parse(
         "--ros-args --log-config-file c --log-file-name x --log-file-name y -e /a --enclave /b"
     )
@@ -139,7 +139,7 @@ def test_the_remaining_flags_take_their_word_as_it_is() -> None:
 
 
 def test_logs_are_switched_on_and_off() -> None:
-    """All are on to begin with; the last word counts."""
+    """All logs are on by default, and the last flag wins."""
     args = parse(
         "--ros-args --disable-stdout-logs --disable-rosout-logs --enable-rosout-logs "
         "--disable-external-lib-logs"
@@ -159,7 +159,7 @@ def test_logs_are_switched_on_and_off() -> None:
     ],
 )
 def test_a_log_file_is_written_only_when_asked_for(flags: str, prefix: str | None) -> None:
-    """ROS writes one always; a robot's disk is small."""
+    """ROS always writes one, but a robot's disk is small."""
     assert parse(f"/bin/prog.py --ros-args {flags}").log_file_prefix() == prefix
 
 
@@ -186,7 +186,7 @@ def test_a_log_file_is_written_only_when_asked_for(flags: str, prefix: str | Non
     ],
 )
 def test_a_value_that_cannot_be_read_is_shown_with_what_fits(line: str, says: str) -> None:
-    """The user sees the word at fault."""
+    """The error shows the word at fault."""
     with pytest.raises(InvalidROSArgsError) as info:
         parse_arguments(["prog", "--ros-args", *line.split()])
 
@@ -333,7 +333,7 @@ def test_a_nodes_name_may_be_spread_over_keys(node: str, names: set[str]) -> Non
 
 @pytest.mark.parametrize("key", ["/foo**", "/**foo", "/f*oo", "/**/n**ode", "/a//n", "/a/", "/1a"])
 def test_a_key_that_is_no_nodes_name_is_refused(key: str) -> None:
-    """A wildcard is a whole token."""
+    """A wildcard must be a whole token."""
     with pytest.raises(ParameterFileError, match=r"token|slashes"):
         parse_parameter_yaml(f'"{key}": {{ros__parameters: {{x: 1}}}}')
 
@@ -384,7 +384,7 @@ def test_a_key_that_is_no_nodes_name_is_refused(key: str) -> None:
     ],
 )
 def test_a_plain_scalar_has_the_type_that_rcl_gives_it(text: str, value: object) -> None:
-    """Which is what C's strtoll and strtod make of it, after the words for truth."""
+    """As C's strtoll and strtod parse it, after the words for booleans."""
     parsed = parse_scalar(text)
 
     assert parsed == value
@@ -418,7 +418,7 @@ def test_not_a_number_is_a_number(text: str) -> None:
     ],
 )
 def test_quotes_keep_a_string_and_lists_have_one_type(text: str, value: object) -> None:
-    """The tag !!str does what quotes do."""
+    """The tag !!str has the same effect as quotes."""
     assert parse_value(text) == value
 
 
@@ -444,7 +444,7 @@ def test_a_value_that_no_parameter_can_have_is_refused(text: str, says: str) -> 
 
 
 def test_nested_names_are_joined_by_dots() -> None:
-    """The rules are in the order of the file, with the line breaks of YAML gone."""
+    """The rules keep the order of the file."""
     text = """
 # a comment
 ---
@@ -488,7 +488,7 @@ def test_an_empty_file_has_no_rules(text: str) -> None:
     ],
 )
 def test_a_malformed_file_is_refused_with_line_and_reason(text: str, line: int, says: str) -> None:
-    """What was given, where, and what fits."""
+    """The error says what was given, where, and what is allowed."""
     with pytest.raises(ParameterFileError) as info:
         parse_parameter_yaml(text, "robot.yaml")
 
@@ -497,7 +497,7 @@ def test_a_malformed_file_is_refused_with_line_and_reason(text: str, line: int, 
 
 
 def test_a_file_that_cannot_be_read_is_an_error_with_its_path(tmp_path: Path) -> None:
-    """A directory, a missing file, bytes that are no text."""
+    """A directory, a missing file, or bytes that are not text."""
     binary = tmp_path / "binary.yaml"
     binary.write_bytes(b"\xff\xfe\x00")
     for path in (tmp_path, tmp_path / "missing.yaml", binary):
@@ -506,7 +506,7 @@ def test_a_file_that_cannot_be_read_is_an_error_with_its_path(tmp_path: Path) ->
 
 
 def test_a_file_is_read_from_disk(tmp_path: Path) -> None:
-    """What `--params-file` does."""
+    """As `--params-file` does."""
     file = tmp_path / "robot.yaml"
     file.write_text("/**: {ros__parameters: {rate: 1e1}}", encoding="utf-8")
 
@@ -546,7 +546,7 @@ words = st.one_of(
 
 @given(st.lists(words, max_size=10))
 def test_any_words_are_arguments_or_an_error_that_shows_one(args: list[str]) -> None:
-    """Nothing but the documented error, and no word of the program's own is lost."""
+    """It raises only the documented error, and keeps the program's own arguments."""
     own = tuple(remove_ros_args(args))
     try:
         parsed = parse_arguments(args).non_ros_args
@@ -558,7 +558,7 @@ def test_any_words_are_arguments_or_an_error_that_shows_one(args: list[str]) -> 
 
 @given(st.integers(-(2**63), 2**63 - 1) | st.booleans() | st.floats(allow_nan=False))
 def test_what_python_prints_is_read_back(value: float) -> None:
-    """So `ros2 param dump` and a file agree."""
+    """So that a file from `ros2 param dump` can be read."""
     text = {math.inf: ".inf", -math.inf: "-.inf"}.get(value, str(value))
 
     parsed = parse_scalar(text)

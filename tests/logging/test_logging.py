@@ -1,4 +1,4 @@
-"""Logging: rcutils' console, rclpy's filters, the standard library underneath."""
+"""Logging has rcutils' console format and rclpy's filters, on top of the standard library."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ SINKS: list[Callable[[], None]] = []
 
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Start each test as a new process would, and leave nothing behind."""
+    """Start each test with the logging state of a new process, and restore it afterwards."""
     for variable in VARIABLES:
         monkeypatch.delenv(variable, raising=False)
     logging.clear_config()
@@ -53,7 +53,7 @@ def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def logger(name: str = "talker") -> logging.RcutilsLogger:
-    """Return a logger with a clock that stands still."""
+    """Return a logger whose clock stands still."""
     return logging.get_logger(name, now_ns=lambda: STAMP_NS)
 
 
@@ -70,7 +70,7 @@ def test_a_line_looks_as_in_ros(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_each_method_has_its_severity(capsys: pytest.CaptureFixture[str]) -> None:
-    """Five words, as rcutils spells them."""
+    """Five names, spelled as in rcutils."""
     log = logger()
     log.set_level(LoggingSeverity.DEBUG)
     log.debug("m")
@@ -94,7 +94,7 @@ def test_percent_signs_and_braces_are_text(capsys: pytest.CaptureFixture[str]) -
 def test_all_tokens_of_the_format_are_filled_in(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """rcutils documents nine of them, and five escapes."""  # noqa: D403
+    """rcutils documents nine tokens and five escapes."""  # noqa: D403
     monkeypatch.setenv(
         "RCUTILS_CONSOLE_OUTPUT_FORMAT",
         r"{severity}|{name}|{message}|{function_name}|{time}|{time_as_nanoseconds}\t100%{nothing}{",
@@ -157,10 +157,10 @@ def test_colours_are_rcutils_colours_when_asked_for(
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
+    """A stream that claims to be a terminal."""
 
     def isatty(self) -> bool:
-        """Say so."""
+        """Return True."""
         return True
 
 
@@ -168,7 +168,7 @@ class Terminal(io.StringIO):
 def test_a_terminal_is_coloured_unless_forbidden(
     variable: str | None, *, coloured: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Auto means: only on a terminal."""
+    """By default, only a terminal gets colours."""
     if variable is not None:
         monkeypatch.setenv("RCUTILS_COLORIZED_OUTPUT", variable)
     terminal = Terminal()
@@ -196,7 +196,7 @@ def test_lines_go_to_stdout_when_asked_for(
 def test_a_variable_that_is_neither_0_nor_1_is_an_error(
     variable: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A typing mistake is not taken for a no."""
+    """A typo does not count as 0."""
     monkeypatch.setenv(variable, "yes")
 
     with pytest.raises(ConfigurationError, match=f"{variable}.*'yes'.*0 or 1"):
@@ -204,7 +204,7 @@ def test_a_variable_that_is_neither_0_nor_1_is_an_error(
 
 
 def test_a_buffered_stream_is_written_out_line_by_line() -> None:
-    """Both 0 and 1 ask for it; without, the stream decides."""
+    """Both 0 and 1 request it; without the variable, the stream decides."""
     flushes = [
         ConsoleSettings.from_environment({"RCUTILS_LOGGING_BUFFERED_STREAM": value}).flush
         for value in ("", "0", "1")
@@ -233,7 +233,7 @@ def test_info_is_the_level_to_begin_with() -> None:
 
 
 def test_a_child_has_its_parents_level_until_it_has_its_own() -> None:
-    """Names are a tree, joined by dots."""
+    """Names form a tree, separated by dots."""
     parent = logger("parent")
     child = parent.get_child("child")
     parent.set_level(LoggingSeverity.ERROR)
@@ -248,7 +248,7 @@ def test_a_child_has_its_parents_level_until_it_has_its_own() -> None:
 
 @pytest.mark.parametrize("severity", LoggingSeverity)
 def test_the_root_may_have_any_level(severity: LoggingSeverity) -> None:
-    """Unset lets everything through."""
+    """UNSET passes everything."""
     logging.set_logger_level("", severity)
 
     assert logging.get_logger_effective_level("anything") is severity
@@ -265,7 +265,7 @@ def test_a_level_can_be_set_before_the_logger_exists() -> None:
 
 
 def test_clearing_forgets_all_levels() -> None:
-    """Then all are as at the start."""
+    """Afterwards all levels are as at the start."""
     log = logger()
     log.set_level(LoggingSeverity.WARN)
     logging.clear_config()
@@ -275,13 +275,13 @@ def test_clearing_forgets_all_levels() -> None:
 
 @pytest.mark.parametrize("word", ["warn", "WARN", "Warn"])
 def test_a_severity_is_found_by_name(word: str) -> None:
-    """In upper and lower case."""
+    """In upper or lower case."""
     assert logging.get_logging_severity_from_string(word) is LoggingSeverity.WARN
 
 
 @pytest.mark.parametrize("kind", [RuntimeError, ValueError, AionodeError])
 def test_an_unknown_severity_says_which_there_are(kind: type[Exception]) -> None:
-    """rclpy raises RuntimeError."""  # noqa: D403
+    """It is a RuntimeError, as in rclpy."""
     with pytest.raises(kind, match=r"'loud'; valid levels are UNSET, DEBUG, INFO, WARN"):
         logging.get_logging_severity_from_string("loud")
 
@@ -310,7 +310,7 @@ class Clock:
 
 
 def test_once_lets_the_first_message_through() -> None:
-    """And `once=False` all."""
+    """And `once=False` passes all."""
     log = logger()
 
     assert results(lambda i: log.info(f"{i}", once=True)) == [True, *[False] * 4]
@@ -318,7 +318,7 @@ def test_once_lets_the_first_message_through() -> None:
 
 
 def test_skip_first_stops_the_first_message() -> None:
-    """All others pass."""
+    """All later ones pass."""
     log = logger()
 
     assert results(lambda i: log.info(f"{i}", skip_first=True)) == [False, *[True] * 4]
@@ -343,12 +343,12 @@ def test_throttle_lets_one_message_through_per_period() -> None:
 
 
 def test_throttle_comes_before_skip_first() -> None:
-    """What skip_first stops has used up the period."""
+    """A message that skip_first stops still starts a period."""
     assert throttled(skip_first=True) == [False, False, False, True, False]
 
 
 def test_skip_first_comes_before_once() -> None:
-    """The second message is the one."""
+    """The second message is the one that passes."""
     log = logger()
 
     logged = results(lambda i: log.info(f"{i}", skip_first=True, once=True))
@@ -357,7 +357,7 @@ def test_skip_first_comes_before_once() -> None:
 
 
 def test_throttle_follows_a_ros_clock() -> None:
-    """In a simulation the period passes as simulated time does."""
+    """In a simulation the period is measured in simulated time."""
     clock = ROSClock()
     clock.set_ros_time_active(True)
     log = logger()
@@ -371,7 +371,7 @@ def test_throttle_follows_a_ros_clock() -> None:
 
 
 def test_throttle_survives_a_clock_that_was_set_back() -> None:
-    """When a simulation starts again, its log must not be silent for as long as it ran."""
+    """After a simulation has restarted, its log must not stay silent for as long as it had run."""
     site = CallSite(test_names_must_not_be_empty.__code__, "a", {"throttle_duration_sec": 1.0})
     times = [100 * SECOND, 5 * SECOND, 5 * SECOND + 1, 6 * SECOND]
 
@@ -379,7 +379,7 @@ def test_throttle_survives_a_clock_that_was_set_back() -> None:
 
 
 def test_each_place_in_the_code_has_its_own_state() -> None:
-    """Two calls on one line as well."""
+    """Even two calls on one line."""
     log = logger()
 
     logged = [(log.info("a", once=True), log.info("b", once=True)) for _ in range(2)]
@@ -415,7 +415,7 @@ def test_a_place_in_the_code_must_not_change_its_options(
 
 @pytest.mark.parametrize("method", ["info", "warn", "error", "fatal"])
 def test_one_place_in_the_code_may_log_with_several_severities(method: str) -> None:
-    """A line such as ``(log.info if ok else log.error)(text)`` fails only when something does."""
+    """A line such as ``(log.info if ok else log.error)(text)`` would fail only on an error."""
     log = logger()
 
     logged = [getattr(log, each)("m", once=True) for each in ("debug", method, "debug", method)]
@@ -424,7 +424,7 @@ def test_one_place_in_the_code_may_log_with_several_severities(method: str) -> N
 
 
 def test_an_unknown_option_is_a_type_error_that_names_the_known() -> None:
-    """A misspelled filter must not do nothing."""
+    """A misspelled filter must not be ignored silently."""
     with pytest.raises(TypeError, match="parameter 'onec' is not one of the recognized"):
         logger().info("m", onec=True)  # type: ignore[call-arg]
 
@@ -455,7 +455,7 @@ booleans = st.sampled_from([{}, {"once": True}, {"skip_first": True}, {"throttle
 def test_no_filter_lets_more_through_than_without_it(
     chosen: list[LogOptions], waits: list[int]
 ) -> None:
-    """Filters only take away, whatever the clock does."""
+    """Filters only remove messages, whatever the clock does."""
     options: LogOptions = {}
     for each in chosen:
         options.update(each)
@@ -475,7 +475,7 @@ def test_no_filter_lets_more_through_than_without_it(
 def test_a_message_reaches_handlers_of_the_standard_library(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """caplog, structlog, Sentry and the like see it, with its place and its time."""
+    """caplog, structlog and Sentry see it, with its location and time."""
     logger("ns.talker").warning("m")
 
     (record,) = caplog.records
@@ -538,7 +538,7 @@ def test_importing_installs_nothing_and_run_may_show_all_loggers_once() -> None:
 
 
 def test_an_application_that_configures_logging_keeps_its_own_format() -> None:
-    """Its handlers are left alone."""
+    """Its handlers are kept."""
     err = run_alone(
         "logging.basicConfig(format='mine: %(message)s', level=logging.INFO)\n"
         "aionode.logging.configure(console=False, whole_process=True)\n"
@@ -614,7 +614,7 @@ def test_a_sink_gets_what_children_log_until_it_is_removed() -> None:
 
 
 def test_a_message_goes_to_the_nearest_sink_only() -> None:
-    """Node /a does not publish what node /a/b says, although a.b is below a."""
+    """Node /a does not publish what node /a/b logs, although a.b is below a."""
     above, _ = sink_on(logger("a"))
     below, _ = sink_on(logger("a.b"))
     logger("a.b").info("m")
@@ -651,7 +651,7 @@ def test_a_sink_gets_nothing_below_the_level() -> None:
 
 
 def test_levels_and_console_can_be_configured(capsys: pytest.CaptureFixture[str]) -> None:
-    """What `--log-level` and `--disable-stdout-logs` ask for."""
+    """As `--log-level` and `--disable-stdout-logs` do."""
     logging.configure(level=LoggingSeverity.ERROR, levels={"talker": 10}, console=False)
 
     assert logger("other").warning("m") is False

@@ -51,7 +51,7 @@ angular:
 
 
 def test_plain_values_are_dicts_lists_and_numbers() -> None:
-    """Whatever json or yaml can print; a byte is a number."""
+    """All that json or yaml can print; a byte is a number."""
     status = DiagnosticStatus(level=DiagnosticStatus.WARN, values=[KeyValue(key="a", value="b")])
 
     assert to_builtins(DiagnosticArray(status=[status]))["status"] == [
@@ -68,7 +68,7 @@ def test_plain_values_are_dicts_lists_and_numbers() -> None:
 
 
 def test_yaml_is_what_ros2_topic_echo_prints() -> None:
-    """Lists stand at the indent of their key, as recorded from ROS 2."""
+    """Lists have the indent of their key, as recorded from ROS 2."""
     assert to_yaml(Twist()) == TWIST
     assert to_yaml(Fibonacci.Feedback(sequence=[0, 1])) == "sequence:\n- 0\n- 1\n"
     assert to_yaml(String(data="Hello 46")) == "data: Hello 46\n"
@@ -93,7 +93,7 @@ def test_json_is_one_line() -> None:
 
 
 def test_nan_and_infinity_have_words() -> None:
-    """JSON has none of its own, and null would lose which one it was."""
+    """JSON lacks them, and null would not tell which one it was."""
     message = JointState(position=[math.nan, math.inf, -math.inf])
 
     assert json.loads(to_json(message))["position"] == ["NaN", "Infinity", "-Infinity"]
@@ -117,7 +117,7 @@ def test_numbers_that_yaml_reads_as_text_are_understood_for_floats() -> None:
 
 
 def test_arrays_are_taken_as_they_are() -> None:
-    """A program that has arrays needs no lists."""
+    """A program that has arrays need not convert them to lists."""
     values = np.array([1.0, 2.0])
 
     assert from_builtins(JointState, {"position": values}).position is values
@@ -125,7 +125,7 @@ def test_arrays_are_taken_as_they_are() -> None:
 
 
 def test_the_arrays_of_a_new_message_can_be_changed() -> None:
-    """It belongs to its owner alone."""
+    """Nobody else refers to them."""
     message = from_builtins(JointState, {"position": [1, 2]})
     message.position[0] = 5
 
@@ -223,7 +223,7 @@ def test_a_message_that_does_not_fit_is_not_printed() -> None:
 
 @given(st.one_of(st.text(max_size=20), st.text("{}[]:,-!&*#'\" \n\t01data", max_size=20)))
 def test_no_text_raises_anything_but_a_message_error(text: str) -> None:
-    """It is typed at a prompt, or comes from the network."""
+    """Texts are typed at a prompt, or come from the network."""
     for read in (from_json, from_yaml):
         with contextlib.suppress(MessageError):
             assert isinstance(read(String, text), String)
@@ -231,7 +231,7 @@ def test_no_text_raises_anything_but_a_message_error(text: str) -> None:
 
 @pytest.mark.parametrize("text", ["[" * 100_000, "data: 2001-99-99"])
 def test_texts_that_break_a_parser_are_message_errors(text: str) -> None:
-    """Too deep for the stack, or a date that is none."""
+    """Values nested too deeply for the stack, or an invalid date."""
     with pytest.raises(MessageError):
         from_yaml(String, text) if ":" in text else from_json(String, text)
 

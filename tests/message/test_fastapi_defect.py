@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 
 
 class Written:
-    """What Pydantic writes, and what is neither a model nor a dataclass."""
+    """A class with a Pydantic schema that is neither a model nor a dataclass."""
 
     __slots__ = ()
 
@@ -24,7 +24,7 @@ class Written:
 
 
 def test_fastapi_writes_nothing_by_pydantic_that_no_annotation_describes() -> None:
-    """If this fails, FastAPI does: remove `aionode/message/_fastapi.py`, and this file."""
+    """If this fails, FastAPI was fixed: remove `aionode/message/_fastapi.py` and this file."""
     Written.__pydantic_serializer__ = TypeAdapter(Written).serializer  # type: ignore[attr-defined]
 
     assert TypeAdapter(Written).dump_python(Written()) == {"x": 1}

@@ -39,7 +39,7 @@ def test_messages_of_fixed_size_are_not_measured(cls: Any) -> None:
 
 @pytest.mark.parametrize("msg", LARGE, ids=[type(msg).__name__ for msg in LARGE])
 def test_a_message_is_about_as_large_as_it_is_told(msg: Any) -> None:
-    """Within a factor of 3; a text with a sign beyond 65535 takes four bytes for each."""
+    """Within a factor of 3; a string with a character above 65535 takes four bytes for each."""
     cls: Any = type(msg)
     size_of = memory_size(cls)
     assert size_of is not None

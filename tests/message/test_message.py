@@ -1,4 +1,4 @@
-"""Message, service and action classes: how they are written, described, compared and copied."""
+"""How message, service and action classes are written, described, compared and copied."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ make_words: Any = Words  # to type checkers, a field without a default has to be
 
 
 def test_every_field_has_a_default_without_being_told() -> None:
-    """ROS gives each field a zero; a class may name another value."""
+    """ROS gives each field a zero; a class may specify another value."""
     words = make_words()
 
     assert (words.text, words.short, words.flag, words.level) == ("", "abc", True, b"\x02")
@@ -91,7 +91,7 @@ def test_defaults_are_not_shared_between_messages() -> None:
 
 
 def test_fields_describe_type_and_default_in_order() -> None:
-    """The codec, the hash and the CLI work from this description."""
+    """The codec, the hash and the CLI use this description."""
     described = {field.name: field for field in fields(Words)}
 
     assert list(described)[:3] == ["text", "short", "flag"]
@@ -104,7 +104,7 @@ def test_fields_describe_type_and_default_in_order() -> None:
 
 
 def test_a_default_that_is_the_zero_is_none() -> None:
-    """So `x: float64 = 0.0` and a definition without a default are the same."""
+    """So that `x: float64 = 0.0` equals a definition without a default."""
     assert all(field.default is None for field in fields(Vector3))
     assert [field.default for field in fields(Quaternion)] == [None, None, None, 1.0]
 
@@ -116,7 +116,7 @@ def test_constants_are_no_fields() -> None:
 
 
 def test_type_names_of_halves_are_those_of_rosidl() -> None:
-    """Halves have names of their own in type descriptions."""
+    """Requests and responses have their own names in type descriptions."""
     assert type_name(String) == "std_msgs/msg/String"
     assert type_name(AddTwoInts) == "example_interfaces/srv/AddTwoInts"
     assert type_name(AddTwoInts.Request) == "example_interfaces/srv/AddTwoInts_Request"
@@ -125,7 +125,7 @@ def test_type_names_of_halves_are_those_of_rosidl() -> None:
 
 
 def test_an_action_has_the_hidden_types_of_rclpy() -> None:
-    """The action protocol is made of them; they are made when first asked for."""
+    """The action protocol consists of them; they are made on first use."""
     impl = Fibonacci.Impl
 
     assert impl is Fibonacci.Impl
@@ -171,7 +171,7 @@ def test_a_repr_is_that_of_rclpy(message: Message, text: str) -> None:
 
 
 def test_a_repr_shows_arrays_as_numpy_and_sequences_as_lists() -> None:
-    """As rclpy does; a long sequence is shortened, so that an image fits a line."""
+    """As in rclpy; a long sequence is shortened, so that an image fits on a line."""
     assert "covariance=array([0., 0., 0., 0., 0., 0., 0., 0., 0.])" in repr(Imu())
     assert "position=[1.0, 2.0]" in repr(JointState(position=np.array([1.0, 2.0])))
     assert "data=[1, 2]" in repr(Image(data=b"\x01\x02"))
@@ -180,7 +180,7 @@ def test_a_repr_shows_arrays_as_numpy_and_sequences_as_lists() -> None:
 
 
 def test_equality_compares_values_arrays_included() -> None:
-    """Both == and != answer with a bool, in whatever form an array is held."""
+    """Both == and != return a bool, in whatever form an array is stored."""
     one, other = Imu(orientation_covariance=[1] * 9), Imu(orientation_covariance=np.ones(9))
 
     assert (one == other, one != other) == (True, False)
@@ -202,7 +202,7 @@ def test_messages_of_different_classes_are_never_equal() -> None:
 
 
 def test_messages_have_no_hash() -> None:
-    """What can change cannot be a key."""
+    """A mutable object cannot be a key."""
     with pytest.raises(TypeError, match="unhashable"):
         hash(String())
 
@@ -244,7 +244,7 @@ def test_messages_can_be_pickled(message: Message) -> None:
 
 
 def test_a_wrong_field_name_is_a_type_error() -> None:
-    """At construction, and as an AttributeError when it is set."""
+    """At construction; when it is set, it is an AttributeError."""
     with pytest.raises(TypeError, match="dat"):
         String(dat="hi")  # type: ignore[call-arg] # the point of the test
     with pytest.raises(AttributeError):
@@ -252,14 +252,14 @@ def test_a_wrong_field_name_is_a_type_error() -> None:
 
 
 def test_construction_does_not_validate() -> None:
-    """That happens where it is published; a loop that fills fields pays nothing."""
+    """Values are checked by `publish`, so that a loop that fills fields stays fast."""
     wrong: Any = 5
 
     assert String(data=wrong).data == wrong
 
 
 def test_fields_may_have_the_names_of_functions() -> None:
-    """Message classes keep all names free for fields."""
+    """Message classes reserve no names."""
 
     class Odd(Message, typename="tutorial/msg/Odd"):
         type_hash: str = "a"
@@ -282,14 +282,14 @@ def message(field: str) -> type:
 
 @pytest.mark.parametrize("name", ["_x", "Upper", "a__b", "end_", "from"])
 def test_a_field_name_that_ros_refuses_is_refused(name: str) -> None:
-    """No definition could be printed for it, and generated code is made of these names."""
+    """No definition could be printed, and generated code contains these names."""
     with pytest.raises(TypeError, match=f"tutorial/msg/Odd.{name}: not a valid ROS field name"):
         message(name)
 
 
 @pytest.mark.parametrize("name", ["Words", "tutorial/Words", "tutorial/msg/words", "A/msg/B"])
 def test_a_type_name_has_to_be_one(name: str) -> None:
-    """Keys, tokens and hashes are made of it."""
+    """Keys, tokens and hashes contain it."""
     with pytest.raises(TypeError, match="not a valid ROS type name"):
 
         class Bad(Message, typename=name):
@@ -297,7 +297,7 @@ def test_a_type_name_has_to_be_one(name: str) -> None:
 
 
 def test_an_annotation_without_a_width_says_what_fits() -> None:
-    """`int` alone says nothing about the wire, and a service is no value."""
+    """`int` alone has no width on the wire, and a service is not a value."""
     with pytest.raises(TypeError, match="AddTwoInts: not a field type"):
         Array[AddTwoInts, 3]
     with pytest.raises(TypeError, match="use int32 or int64"):
@@ -307,7 +307,7 @@ def test_an_annotation_without_a_width_says_what_fits() -> None:
 
 
 def test_a_default_that_does_not_fit_is_refused_at_once() -> None:
-    """With the same error as a value."""
+    """With the same error as a wrong value."""
     with pytest.raises(MessageError, match=r"tutorial/msg/Bad\.number: 300, uint8 holds 0 to 255"):
 
         class Bad(Message, typename="tutorial/msg/Bad"):
@@ -315,14 +315,14 @@ def test_a_default_that_does_not_fit_is_refused_at_once() -> None:
 
 
 def test_arrays_of_arrays_are_refused() -> None:
-    """ROS has none."""
+    """ROS has no such type."""
     with pytest.raises(TypeError, match="no arrays of arrays"):
         Array[Sequence[int32], 3]
 
 
 @pytest.mark.parametrize("size", [0, -1, "3"])
 def test_a_size_is_a_positive_int(size: object) -> None:
-    """A size of nothing is a mistake."""
+    """A size of zero is a mistake."""
     with pytest.raises(TypeError, match="at least 1"):
         Array[int32, size]
 
@@ -346,7 +346,7 @@ def test_a_size_may_be_a_literal_type() -> None:
 
 
 def test_bytes_are_a_default_for_bytes() -> None:
-    """The shortest form; the description has numbers, as the definition would."""
+    """The shortest form; the description contains numbers, as a definition would."""
 
     class Blob(Message, typename="tutorial/msg/Blob"):
         data: Sequence[uint8] = b"ab"
@@ -366,7 +366,7 @@ def test_bytes_are_a_default_for_bytes() -> None:
     ],
 )
 def test_other_defaults_that_do_not_fit(annotation: object, default: object, problem: str) -> None:
-    """All are found when the class is made."""
+    """All of them are found when the class is defined."""
     body = {"__annotations__": {"field": annotation}, "field": default}
 
     with pytest.raises(MessageError, match=problem):
@@ -383,7 +383,7 @@ def test_a_service_needs_both_halves() -> None:
 
 
 def test_an_action_is_written_as_a_class() -> None:
-    """With three nested messages, which get their ROS names from it."""
+    """It has three nested messages, which get their ROS names from it."""
 
     class Walk(ActionType, typename="tutorial/action/Walk"):
         class Goal(Message):
@@ -400,7 +400,7 @@ def test_an_action_is_written_as_a_class() -> None:
 
 
 def test_a_message_without_a_name_says_how_to_name_it() -> None:
-    """A half outside of a service, or a forgotten argument."""
+    """A request outside of a service, or a forgotten argument."""
 
     class Nameless(Message):
         pass
@@ -410,7 +410,7 @@ def test_a_message_without_a_name_says_how_to_name_it() -> None:
 
 
 def test_fields_of_something_else_is_a_type_error() -> None:
-    """A service is no message, and says which of its parts are."""
+    """A service is not a message, and the error names its parts that are."""
     with pytest.raises(TypeError, match=r"such as \.Request"):
         fields(AddTwoInts)  # type: ignore[arg-type] # the point of the test
     with pytest.raises(TypeError, match="not a message"):
@@ -418,7 +418,7 @@ def test_fields_of_something_else_is_a_type_error() -> None:
 
 
 def test_a_subclass_keeps_the_fields_of_its_base() -> None:
-    """And has a name of its own if it is given one."""
+    """It has a name of its own if one is given."""
 
     class More(Inner, typename="tutorial/msg/More"):
         extra: str = ""
@@ -443,7 +443,7 @@ def test_numpy_is_not_imported_before_an_array_is_made() -> None:
 
 
 def test_a_type_that_is_imported_for_type_checkers_only_is_refused(tmp_path: Path) -> None:
-    """With the class, the field and the remedy: Python's NameError names neither."""
+    """The error names class, field and remedy; Python's NameError names none of them."""
     module = tmp_path / "unseen.py"
     module.write_text(
         "from __future__ import annotations\n"

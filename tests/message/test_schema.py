@@ -38,7 +38,7 @@ class Reading(Message, typename="tutorial/msg/Reading"):
 
 
 def test_the_schema_of_a_message_is_an_object_for_tools() -> None:
-    """Docstring, ranges and defaults are in it, and nothing is elsewhere."""
+    """It contains the docstring, ranges and defaults, without references."""
     assert json_schema(Reading) == {
         "title": "Reading",
         "type": "object",
@@ -81,12 +81,12 @@ def test_the_schema_of_a_message_is_an_object_for_tools() -> None:
 
 
 def test_limits_that_a_float_cannot_hold_are_left_out() -> None:
-    """As 9.223372036854776e+18 the largest int64 would be one too large."""
+    """Written as 9.223372036854776e+18, the largest int64 would be one too large."""
     assert json_schema(AddTwoInts.Request)["properties"]["a"] == {"type": "integer", "default": 0}
 
 
 def test_a_service_has_no_schema_but_its_halves_have() -> None:
-    """The mistake says what fits."""
+    """The error says what to use instead."""
     with pytest.raises(TypeError, match=r"\.Request"):
         json_schema(AddTwoInts)  # type: ignore[arg-type]  # the mistake
 
@@ -102,7 +102,7 @@ class Order(BaseModel):
 
 
 def test_a_model_reads_and_writes_messages() -> None:
-    """Arrays, bytes and the floats that JSON lacks are written as `to_json` writes them."""
+    """Arrays, bytes, NaN and infinity are written as by `to_json`."""
     order = Order.model_validate_json('{"twist": {"linear": {"x": 1}}, "scan": {"ranges": [2]}}')
 
     assert order.twist == Twist(linear=Vector3(x=1.0))
@@ -119,14 +119,14 @@ def test_a_model_as_python_has_plain_values() -> None:
 
 
 def test_a_message_that_is_one_already_is_taken_as_it_is() -> None:
-    """No copy, as with any other object of a model."""
+    """It is not copied, like any other object of a model."""
     twist = Twist()
 
     assert Order(twist=twist).twist is twist
 
 
 def test_a_wrong_field_is_a_validation_error_with_its_path() -> None:
-    """FastAPI makes 422 of it."""
+    """FastAPI turns it into a 422."""
     with pytest.raises(ValidationError, match=r"geometry_msgs/msg/Twist\.linear\.x: 'fast'"):
         Order.model_validate({"twist": {"linear": {"x": "fast"}}})
 
@@ -144,7 +144,7 @@ def test_bytes_are_lists_of_numbers() -> None:
 
 
 def test_the_schema_of_a_model_names_each_message_once() -> None:
-    """So generated clients have one type for each; both directions are the same."""
+    """So that generated clients have one type for each, in both directions."""
     schema = Order.model_json_schema()
 
     assert set(schema["$defs"]) == {"Twist", "Vector3", "LaserScan", "Header", "Time"}
@@ -188,7 +188,7 @@ async def ask(app: FastAPI, body: Any, path: str = "/stretch") -> httpx.Response
 
 
 async def test_a_route_takes_and_returns_messages(app: FastAPI) -> None:
-    """As it does models."""
+    """As it does with models."""
     response = await ask(app, {"linear": {"x": 0.5}})
 
     assert response.status_code == 200
@@ -196,7 +196,7 @@ async def test_a_route_takes_and_returns_messages(app: FastAPI) -> None:
 
 
 async def test_a_wrong_body_is_a_422_that_names_the_field(app: FastAPI) -> None:
-    """And the handler is not called."""
+    """The handler is not called."""
     response = await ask(app, {"linear": {"w": 0.5}})
 
     assert response.status_code == 422
@@ -220,7 +220,7 @@ def test_openapi_has_the_messages_as_components(app: FastAPI) -> None:
 async def test_messages_are_written_in_responses_that_no_annotation_describes(
     annotation: Any,
 ) -> None:
-    """A first route has no annotation; its bytes, arrays and NaN are as `to_json` writes them."""
+    """Bytes, arrays and NaN are written as by `to_json`, even without an annotation."""
     app = FastAPI()
 
     async def status():  # type: ignore[no-untyped-def]  # noqa: ANN202  # as users write it

@@ -27,7 +27,7 @@ def test_encoding_returns_the_bytes_as_they_are() -> None:
 
 
 def test_decoding_keeps_the_bytes() -> None:
-    """Whether they hold a message is known when they are decoded as one."""
+    """Whether they are a valid message shows only when they are decoded."""
     kept = cdr.decode(serialized(String), memoryview(b"\0\1\0\0 no message"))
 
     assert isinstance(kept, SerializedMessage)
@@ -37,7 +37,7 @@ def test_decoding_keeps_the_bytes() -> None:
 
 
 def test_the_type_is_that_of_the_class_it_stands_for() -> None:
-    """Endpoints of both communicate: name, fields and hash decide about that."""
+    """Endpoints of both communicate, as name, fields and hash are the same."""
     for cls in (String, Imu):
         assert type_name(serialized(cls)) == type_name(cls)
         assert type_hash(serialized(cls)) == type_hash(cls)
@@ -56,6 +56,6 @@ def test_a_class_has_one_serialized_class() -> None:
 
 @pytest.mark.parametrize("given", [str, "std_msgs/msg/String", Fibonacci])
 def test_other_classes_are_refused(given: Any) -> None:
-    """An action is made of services and messages, each of which has a form of its own."""
+    """An action consists of services and messages, each of which can be serialized."""
     with pytest.raises(TypeError):
         serialized(given)

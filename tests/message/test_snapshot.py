@@ -1,6 +1,6 @@
 # Values that do not fit are the point of this file:
 # mypy: disable-error-code="arg-type, list-item"
-"""What fits a field, and what readers of a message get."""
+"""Which values fit a field, and what readers of a message get."""
 
 from __future__ import annotations
 
@@ -259,7 +259,7 @@ def test_numbers_come_in_many_containers(values: object, dtype: type) -> None:
 
 
 def test_float_arrays_take_ints_and_keep_nan_and_infinity() -> None:
-    """Rounding to 32 bits is as usual, infinity is infinity."""
+    """Values are rounded to 32 bits as usual, and infinity stays infinity."""
     seen = snapshot(LaserScan(ranges=[1, 0.5, math.inf], intensities=np.array([math.nan, 2.0])))
 
     assert seen.ranges.tolist() == [1.0, 0.5, math.inf]
@@ -338,7 +338,7 @@ def test_arrays_of_a_snapshot_are_read_only() -> None:
 def test_a_snapshot_of_any_array_has_its_values_and_no_memory_of_it(
     data: strategies.DataObject, field: str, step: int, count: int
 ) -> None:
-    """Of every type, empty ones and those with gaps or backwards included."""
+    """For every type, including empty, strided and reversed arrays."""
     dtype = np.dtype(field)
     memory = np.frombuffer(data.draw(strategies.binary(min_size=60 * 8, max_size=60 * 8)), np.uint8)
     values = (memory[:60] & 1).astype(bool) if field == "bool" else memory.view(dtype)[:60].copy()
@@ -355,7 +355,7 @@ def test_a_snapshot_of_any_array_has_its_values_and_no_memory_of_it(
 
 
 def test_a_snapshot_of_a_masked_array_keeps_its_values() -> None:
-    """The bytes of one are filled in where it is masked."""
+    """`tobytes` would fill in masked values."""
     masked = np.ma.MaskedArray([1.0, 2.0], mask=[False, True])
     taken = snapshot(JointState(position=masked))
 
@@ -364,7 +364,7 @@ def test_a_snapshot_of_a_masked_array_keeps_its_values() -> None:
 
 
 def test_an_array_that_is_not_contiguous_is_copied_in_order() -> None:
-    """A column of a matrix is a fine sequence of numbers."""
+    """A column of a matrix is a valid sequence of numbers."""
     matrix = np.arange(6.0).reshape(3, 2)
 
     assert snapshot(JointState(position=matrix[:, 1])).position.tolist() == [1.0, 3.0, 5.0]
@@ -380,7 +380,7 @@ def test_a_check_copies_and_changes_nothing() -> None:
 
 
 def test_an_object_of_another_class_is_a_type_error_with_both_names() -> None:
-    """A publisher of String gets a Twist: a bug of the program, not a value that does not fit."""
+    """A Twist passed to a publisher of String is a bug, not a value that does not fit."""
     for make in (snapshotter, checker):
         with pytest.raises(TypeError, match="std_msgs/msg/String: got geometry_msgs/msg/Twist"):
             make(String)(Twist())
@@ -405,7 +405,7 @@ def test_functions_are_made_once_for_each_class() -> None:
 
 
 def test_something_that_is_no_message_class_is_a_type_error() -> None:
-    """It says so instead of failing inside."""
+    """The error says so, instead of an obscure one from inside."""
     with pytest.raises(TypeError, match="not a message class"):
         snapshotter(int)  # type: ignore[type-var] # the point of the test
 

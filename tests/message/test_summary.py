@@ -30,7 +30,7 @@ def length(summary: dict[str, Any]) -> int:
 @settings(suppress_health_check=[HealthCheck.too_slow])
 @given(any_messages(), st.integers(64, 3000))
 def test_no_summary_is_longer_than_its_limit(message: Message, limit: int) -> None:
-    """Whatever robots say, a model's context has room for so much of it; and JSON has no NaN."""
+    """A model's context has limited room, whatever robots publish; and JSON has no NaN."""
     assert length(summarize(message, limit)) <= limit
 
 
@@ -60,14 +60,14 @@ def test_bytes_and_messages_are_described_as_well() -> None:
 
 
 def test_a_long_string_is_cut() -> None:
-    """How long it was is said, so that nobody takes the beginning for all."""
+    """Its length is given, so that the beginning is not taken for the whole."""
     assert summarize(String(data="x" * 5000), 100)["value"]["data"].endswith(
         "x... (5000 characters)"
     )
 
 
 def test_units_stand_beside_the_values_by_their_paths() -> None:
-    """Of the comments of the fields, those of nested messages and of elements of arrays too."""
+    """They come from the comments of fields, including nested messages and array elements."""
     assert summarize(Odometry())["units"] == {
         "pose.pose.position": "m",
         "twist.twist.linear": "m/s",
@@ -78,7 +78,7 @@ def test_units_stand_beside_the_values_by_their_paths() -> None:
 
 
 def test_units_of_definitions_of_others_are_found() -> None:
-    """A ``.msg`` file writes them as its author likes."""
+    """The authors of ``.msg`` files write units in many ways."""
     battery = define("tutorial/msg/Cell", "float32 heat # Temperature in degrees Celsius\nint8 n")
 
     assert summarize(battery())["units"] == {"heat": "°C"}
@@ -110,7 +110,7 @@ def test_a_comment_tells_one_unit_or_none(comment: str, unit: str | None) -> Non
 
 
 def test_what_has_no_room_is_counted() -> None:
-    """The rest is shown: the reader knows that there is more."""
+    """The reader learns that there is more."""
     assert summarize(LaserScan(), 100) == {
         "type": "sensor_msgs/msg/LaserScan",
         "value": {"angle_min": 0.0, "angle_max": 0.0},
@@ -119,7 +119,7 @@ def test_what_has_no_room_is_counted() -> None:
 
 
 def test_a_message_of_very_many_values_is_summarized_in_few_steps() -> None:
-    """A thousand statuses of a thousand values are a robot's diagnostics, not a reason to wait."""
+    """A robot's diagnostics may have a thousand statuses of a thousand values each."""
     status = DiagnosticStatus(name="motor", message="x" * 1000)
 
     assert summarize(DiagnosticArray(status=[status] * 1000), 500)["value"]["status"]["shape"] == [
@@ -128,7 +128,7 @@ def test_a_message_of_very_many_values_is_summarized_in_few_steps() -> None:
 
 
 def test_an_invalid_message_and_a_limit_without_room_are_refused() -> None:
-    """With the field, and what would fit."""
+    """The error names the field, or a limit that would do."""
     with pytest.raises(MessageError, match="data"):
         summarize(String(data=5))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="at least 64"):

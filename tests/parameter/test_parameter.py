@@ -74,7 +74,7 @@ def set_one(parameters: ParameterStore, name: str, value: object) -> SetParamete
     ],
 )
 def test_a_value_has_a_type(value: object, type_: parameter.ParameterType) -> None:
-    """A bool is no int, and an empty list is one of bytes."""
+    """A bool is not an int, and an empty list is a list of bytes."""
     made = Parameter("a", value=value)
 
     assert made.type_ is type_
@@ -83,14 +83,14 @@ def test_a_value_has_a_type(value: object, type_: parameter.ParameterType) -> No
 
 
 def test_numpy_values_are_taken_as_pythons() -> None:
-    """So that they can be compared and written as any others."""
+    """So that they can be compared and written like any others."""
     assert Parameter("a", value=np.array([1, 2])).value == [1, 2]
     assert Parameter("a", value=np.float32(0.5)).type_ is Type.DOUBLE
 
 
 @pytest.mark.parametrize("value", [[1, 2.0], [True, 1], ["a", b"b"], {}, object(), [[1]], {1}])
 def test_a_value_that_no_parameter_holds_is_a_type_error(value: object) -> None:
-    """Lists hold one type."""
+    """The elements of a list have one type."""
     with pytest.raises(TypeError, match="allowed types"):
         Parameter("a", value=value)
 
@@ -119,7 +119,7 @@ def test_a_value_of_another_type_is_a_value_error(
 
 
 def test_a_type_must_be_a_type() -> None:
-    """A forgotten keyword: Parameter("a", 5)."""
+    """As in Parameter("a", 5), with a forgotten keyword."""
     with pytest.raises(TypeError, match="type must be instance of"):
         Parameter("a", 5)  # type: ignore[arg-type]
 
@@ -137,7 +137,7 @@ def test_a_parameter_survives_its_message(value: object) -> None:
 
 
 def test_a_message_from_the_wire_becomes_pythons_types() -> None:
-    """There, lists are arrays of numpy."""
+    """In messages, lists are numpy arrays."""
     message = msg.ParameterValue(type=7, integer_array_value=np.array([1, 2]))
 
     value = parameter.parameter_value_to_python(message)
@@ -175,7 +175,7 @@ def test_a_message_of_an_unknown_type_is_an_error() -> None:
     ],
 )
 def test_a_text_is_guessed_as_rclpy_does(text: str, value: object) -> None:
-    """`param set` takes one; what is no value is a string."""
+    """`param set` takes a text; if it is not another value, it is a string."""
     guessed = parameter.get_parameter_value(text)
 
     assert parameter.parameter_value_to_python(guessed) == value
@@ -224,7 +224,7 @@ def test_an_override_wins_unless_ignored() -> None:
 
 
 def test_an_override_of_another_type_is_an_error_with_a_hint() -> None:
-    """`-p rate:=10` for a double is the classic."""
+    """`-p rate:=10` for a double is the classic mistake."""
     parameters = store(overrides={"rate": 10})
 
     with pytest.raises(InvalidParameterTypeException) as info:
@@ -247,7 +247,7 @@ def test_an_empty_list_fits_every_list() -> None:
 
 
 def test_a_parameter_is_declared_once() -> None:
-    """All names of a list are looked at first."""
+    """All names of a list are checked first."""
     parameters = store()
     parameters.declare_parameter("a", 1)
 
@@ -357,7 +357,7 @@ def test_undeclaring_forgets_a_parameter_without_callbacks_or_event() -> None:
 
 
 def test_an_undeclared_parameter_is_an_error_unless_allowed() -> None:
-    """Then it is one that is not set."""
+    """Where it is allowed, the parameter is not set."""
     with pytest.raises(ParameterNotDeclaredException, match="undeclared parameter") as info:
         store().get_parameter("a")
     assert isinstance(info.value, AionodeError | KeyError)
@@ -369,7 +369,7 @@ def test_an_undeclared_parameter_is_an_error_unless_allowed() -> None:
 
 
 def test_names_must_be_strings() -> None:
-    """Not a parameter, for example."""
+    """A parameter object, for example, is refused."""
     with pytest.raises(TypeError, match="must be instances of type str"):
         store().get_parameters([5])  # type: ignore[list-item]
     with pytest.raises(TypeError, match="must be instances of type str"):
@@ -385,7 +385,7 @@ def listed() -> ParameterStore:
 
 
 def test_a_group_is_read_by_its_prefix() -> None:
-    """The dot is part of the border."""
+    """The prefix ends at a dot: `foo` does not include `foobar`."""
     assert sorted(listed().get_parameters_by_prefix("foo")) == ["b", "bar.c"]
     assert len(listed().get_parameters_by_prefix("")) == 5
 
@@ -410,7 +410,7 @@ def test_names_are_listed_by_prefix_and_depth(
 
 
 def test_the_groups_of_listed_names_are_told() -> None:
-    """Each once."""
+    """Each is listed once."""
     assert listed().list_parameters([], 0).prefixes == ["foo", "foo.bar", "foobar"]
 
 
@@ -428,7 +428,7 @@ def test_listing_checks_its_arguments(prefixes: Any, depth: Any, error: type[Exc
 
 
 def test_a_type_stays_as_declared() -> None:
-    """Unless typing is dynamic."""
+    """Unless its typing is dynamic."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     parameters.declare_parameter("d", 1, ParameterDescriptor(dynamic_typing=True))
@@ -455,7 +455,7 @@ def test_setting_to_not_set_undeclares_a_dynamic_parameter_only() -> None:
 
 
 def test_a_read_only_parameter_is_set_when_declared_and_never_again() -> None:
-    """By an override, for example."""
+    """An override sets it, for example."""
     parameters = store(overrides={"a": 2})
     parameters.declare_parameter("a", 1, ParameterDescriptor(read_only=True))
 
@@ -468,7 +468,7 @@ def test_a_read_only_parameter_is_set_when_declared_and_never_again() -> None:
 
 
 def test_undeclared_parameters_may_be_set_where_allowed() -> None:
-    """They are declared by it, with dynamic typing."""
+    """Setting declares them, with dynamic typing."""
     parameters = store(allow_undeclared=True)
 
     assert set_one(parameters, "a", 1).successful
@@ -476,7 +476,7 @@ def test_undeclared_parameters_may_be_set_where_allowed() -> None:
 
 
 def test_setting_stops_at_an_undeclared_parameter_and_keeps_what_was_set() -> None:
-    """One after the other."""
+    """They are set one after the other."""
     parameters = store()
     parameters.declare_parameter("a", 1)
 
@@ -497,7 +497,7 @@ def test_setting_several_gives_a_result_for_each() -> None:
 
 
 def test_setting_atomically_is_all_or_nothing() -> None:
-    """Also if a later one is undeclared."""
+    """Even if a later one is undeclared."""
     parameters = store()
     parameters.declare_parameters("", [("a", 1), ("b", 1)])
 
@@ -535,7 +535,7 @@ def test_only_parameters_can_be_set() -> None:
 def test_an_int_must_be_in_its_range_and_on_a_step(
     low: int, high: int, step: int, value: int, *, fits: bool
 ) -> None:
-    """Ends count always, in either order; steps are counted from the lower one."""
+    """Both ends are allowed, in either order; steps count from the lower one."""
     parameters = store()
     limits = IntegerRange(from_value=low, to_value=high, step=step)
     parameters.declare_parameter("a", low, ParameterDescriptor(integer_range=[limits]))
@@ -568,7 +568,7 @@ def test_a_float_must_be_in_its_range_and_near_a_step(
 
 
 def test_a_default_out_of_range_is_an_error_with_the_range() -> None:
-    """The mistake is found where it is made."""
+    """The mistake is found where the parameter is declared."""
     limits = ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=10)])
 
     with pytest.raises(InvalidParameterValueException, match="Min: 0, Max: 10, value: 11"):
@@ -576,7 +576,7 @@ def test_a_default_out_of_range_is_an_error_with_the_range() -> None:
 
 
 def test_a_new_descriptor_keeps_the_value_or_takes_the_alternative() -> None:
-    """Or else is refused."""
+    """If neither fits, it is refused."""
     parameters = store()
     parameters.declare_parameter("a", 11)
     limits = IntegerRange(from_value=0, to_value=10)
@@ -623,7 +623,7 @@ def test_callbacks_run_before_and_after_the_change_and_its_event() -> None:
 
 
 def test_declaring_does_not_call_the_pre_callbacks() -> None:
-    """There is nothing yet to modify."""
+    """There is nothing to modify yet."""
     parameters = store()
     log = recording(parameters)
 
@@ -653,7 +653,7 @@ def test_the_newest_callback_runs_first() -> None:
 
 
 def test_a_pre_callback_may_change_and_add_parameters() -> None:
-    """All of its list is set at once."""
+    """Everything in its list is set at once."""
     parameters = store()
     parameters.declare_parameters("", [("a", 1), ("b", 1)])
     events: list[ParameterEvent] = []
@@ -669,7 +669,7 @@ def test_a_pre_callback_may_change_and_add_parameters() -> None:
 
 
 def test_a_pre_callback_may_stop_a_change() -> None:
-    """By an empty list."""
+    """By returning an empty list."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     parameters.callbacks.add_pre_set_parameters_callback(lambda _: [])
@@ -684,7 +684,7 @@ def test_a_pre_callback_may_stop_a_change() -> None:
 
 
 def test_a_rejection_changes_nothing_and_its_reason_is_given() -> None:
-    """The first that rejects wins; those behind it are not asked."""
+    """The first rejection counts; later callbacks are not called."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     log = recording(parameters)
@@ -700,7 +700,7 @@ def test_a_rejection_changes_nothing_and_its_reason_is_given() -> None:
 
 
 def test_a_rejection_when_declaring_is_an_error() -> None:
-    """And the parameter stays undeclared."""
+    """The parameter stays undeclared."""
     parameters = store()
     parameters.callbacks.add_on_set_parameters_callback(
         lambda _: SetParametersResult(successful=False, reason="no")
@@ -724,7 +724,7 @@ def test_a_callback_that_returns_nothing_is_a_type_error(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["pre", "on", "post"])
 def test_what_cannot_be_called_is_no_callback(kind: str) -> None:
-    """The mistake shows where it is made, not at the first change."""
+    """The mistake is reported when it is added, not at the first change."""
     with pytest.raises(TypeError, match="Callback must be callable, got 3"):
         getattr(store().callbacks, f"add_{kind}_set_parameters_callback")(3)
 
@@ -746,7 +746,7 @@ def test_a_removed_callback_is_not_called() -> None:
 
 
 def test_a_change_is_one_event_with_new_changed_and_deleted() -> None:
-    """And the node's full name."""
+    """It also has the node's full name."""
     parameters = store(allow_undeclared=True)
     parameters.declare_parameter("changed", 1)
     parameters.declare_parameter("deleted", 1, ParameterDescriptor(dynamic_typing=True))
@@ -786,7 +786,7 @@ def test_a_failed_change_is_no_event() -> None:
 
 
 def call(parameters: ParameterStore, name: str, request: Any) -> Any:
-    """Ask one of the services, and check that its answer can be sent."""
+    """Call one of the services, and check that its response can be sent."""
     service = next(each for each in parameter_services(parameters) if each.name == name)
     response = service.callback(request, service.srv_type.Response())
     check(response)
@@ -822,7 +822,7 @@ def test_there_are_six_services_with_rcls_names() -> None:
     ],
 )
 def test_a_request_with_more_names_than_any_node_has_is_refused(name: str, request_: Any) -> None:
-    """Forty thousand times one name are a small request, and took 2.3 GB to answer."""
+    """A small request with one name forty thousand times took 2.3 GB to answer."""
     parameters = store()
     parameters.declare_parameter("a", "x")
 
@@ -843,7 +843,7 @@ def test_an_answer_of_many_megabytes_is_refused(value: Any) -> None:
 
 
 def test_many_prefixes_are_looked_up_and_not_gone_through() -> None:
-    """Ten thousand prefixes and a thousand names would stop the loop for seconds."""
+    """Comparing ten thousand prefixes with a thousand names would block the loop for seconds."""
     parameters = store()
     for number in range(1000):
         parameters.declare_parameter(f"group{number}.inner.value", number)
@@ -898,7 +898,7 @@ def test_one_undeclared_name_makes_the_whole_answer_empty(
 
 
 def test_setting_through_the_service_never_raises() -> None:
-    """An undeclared name and an unknown type are results, each for itself."""
+    """An undeclared name or an unknown type is reported in its own result."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     messages = [
@@ -949,7 +949,7 @@ names = st.sampled_from(["a", "b", "c"])
 
 @given(st.lists(st.tuples(names, values), max_size=12))
 def test_a_store_changes_exactly_as_its_results_say(changes: list[tuple[str, object]]) -> None:
-    """A successful change is what is read; a failed one leaves all as it was."""
+    """A successful change is what is read; a failed one changes nothing."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     parameters.declare_parameter("b", 1.0, ParameterDescriptor(dynamic_typing=True))

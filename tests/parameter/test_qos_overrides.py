@@ -47,7 +47,7 @@ def test_without_overrides_the_profile_is_as_written_and_shown() -> None:
 
 
 def test_overrides_change_the_profile() -> None:
-    """Words in upper or lower case, numbers, nanoseconds."""
+    """Values may be words in upper or lower case, numbers, or nanoseconds."""
     options = QoSOverridingOptions((*DEFAULT.policy_kinds, QoSPolicyKind.DEADLINE))
     parameters = store(history="KEEP_ALL", depth=5, reliability="best_effort", deadline=10**9)
 
@@ -60,7 +60,7 @@ def test_overrides_change_the_profile() -> None:
 
 
 def test_a_subscription_has_no_lifespan() -> None:
-    """It is the publisher's."""
+    """Only publishers have one."""
     parameters = store()
     options = QoSOverridingOptions([QoSPolicyKind.LIFESPAN], entity_id="left")
 
@@ -87,13 +87,13 @@ def test_two_endpoints_without_ids_share_their_parameters() -> None:
     ],
 )
 def test_a_value_that_does_not_fit_is_an_error(overrides: dict[str, object], says: str) -> None:
-    """When the endpoint is made."""
+    """The error is raised when the endpoint is created."""
     with pytest.raises(InvalidQosOverridesError, match=says):
         declare(store(**overrides))
 
 
 def test_the_node_may_reject_a_profile() -> None:
-    """By its callback."""
+    """With its callback."""
     options = QoSOverridingOptions.with_default_policies(
         callback=lambda profile: SetParametersResult(successful=profile.depth > 5, reason="short")
     )

@@ -21,21 +21,21 @@ from aionode.parameter.methods import ParameterMethods
 
 
 class Colour(Enum):
-    """Of a light."""
+    """The colour of a light."""
 
     RED = "red"
     GREEN = "green"
 
 
 class Camera(msgspec.Struct):
-    """A group."""
+    """A group of parameters."""
 
     frame: str = "camera"
     rates: list[float] = msgspec.field(default_factory=list)
 
 
 class Driving(msgspec.Struct):
-    """All that a field may be."""
+    """Every kind of field."""
 
     base: str = "base_link"
     speed: Annotated[float, Meta(ge=0.0, le=2.0, multiple_of=0.1, description="in m/s")] = 0.5
@@ -118,7 +118,7 @@ def test_a_change_of_a_parameter_is_a_change_of_the_field(
 
 
 def test_a_group_is_kept_current_too() -> None:
-    """In place: who holds the group sees it."""
+    """It changes in place, so that references to the group see it."""
     parameters = store()
     camera = declare_struct(parameters, Driving).camera
     set_one(parameters, "camera.rates", [1.0, 2.0])
@@ -140,7 +140,7 @@ def test_a_group_is_kept_current_too() -> None:
     ],
 )
 def test_a_value_beyond_the_annotation_is_rejected(name: str, value: object, says: str) -> None:
-    """And the field stays."""
+    """The field keeps its value."""
     parameters = store()
     driving = declare_struct(parameters, Driving)
 
@@ -177,7 +177,7 @@ def test_an_override_that_does_not_fit_is_an_error() -> None:
 
 
 def test_a_failed_declaration_leaves_no_callback_behind() -> None:
-    """The next one may be right."""
+    """The next declaration may be valid."""
     parameters = store(mode="fly")
     with pytest.raises(InvalidParameterValueException):
         declare_struct(parameters, Driving)
@@ -198,7 +198,7 @@ def test_the_names_may_have_a_prefix() -> None:
 
 
 def test_a_change_is_told_once_with_all_fields_set() -> None:
-    """Changes of other parameters are not."""
+    """Changes of other parameters are not reported."""
     parameters = store()
     parameters.declare_parameter("other", 1)
     told: list[tuple[str, float]] = []
@@ -235,7 +235,7 @@ class Plain:
 
 
 def test_a_dataclass_serves_as_well() -> None:
-    """An int as the default of a float is one."""
+    """An int as the default of a float becomes a float."""
     parameters = store()
     plain = declare_struct(parameters, Plain)
 
@@ -250,14 +250,14 @@ def test_a_dataclass_serves_as_well() -> None:
 
 
 class Frozen(msgspec.Struct, frozen=True):
-    """Cannot be kept current."""
+    """A class whose instances cannot be kept current."""
 
     a: int = 1
 
 
 @dataclasses.dataclass(frozen=True)
 class FrozenPlain:
-    """Neither can this."""
+    """The same as a dataclass."""
 
     a: int = 1
 
@@ -269,7 +269,7 @@ class Odd(msgspec.Struct):
 
 
 class Steps(msgspec.Struct):
-    """Steps from nowhere."""
+    """A step without a range."""
 
     a: Annotated[float, Meta(multiple_of=0.1)] = 0.0
 
@@ -285,6 +285,6 @@ class Steps(msgspec.Struct):
     ],
 )
 def test_a_class_that_cannot_be_declared_is_a_type_error(struct_type: type[Any], says: str) -> None:
-    """With what would do."""
+    """The error says what would be accepted."""
     with pytest.raises(TypeError, match=says):
         declare_struct(store(), struct_type)

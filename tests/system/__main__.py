@@ -62,7 +62,7 @@ DEAF = "trap '' INT; while :; do sleep 1; done"
 
 
 def check(truth: bool, text: str) -> None:
-    """Print a result, and remember if it is bad."""
+    """Print a result, and record a failure."""
     print(f"{'ok' if truth else 'WRONG':5}  {text}", flush=True)  # noqa: T201  # a program prints
     if not truth:
         PROBLEMS.append(text)
@@ -84,7 +84,7 @@ def add_members(system: System, ends: Path) -> None:
 
 
 async def kill_some(system: System, seconds: float) -> int:
-    """Kill a process at random every second, of five that were chosen; return how many."""
+    """Kill a random one of five chosen processes every second; return how many were killed."""
     chance = random.Random(1)  # noqa: S311  # no secret
     chosen = chance.sample([f"member{number:02}" for number in range(MEMBERS - 4)], MEMBERS // 10)
     clock = SteadyClock()
@@ -99,7 +99,7 @@ async def kill_some(system: System, seconds: float) -> int:
 
 
 async def crowd(seconds: float, folder: Path) -> None:
-    """Run fifty processes, and look at what they leave."""
+    """Run fifty processes, and check what they leave behind."""
     ends, log = folder / "ends", folder / "log"
     system = System(
         "crowd",
@@ -156,7 +156,7 @@ def check_crowd(ends: Path, log: Path, seconds: float) -> None:
 
 
 def age(file: Path) -> int:
-    """Return how old a rotated file is: its number."""
+    """Return the number of a rotated file, which is higher for older ones."""
     return int(file.suffix[1:]) if file.suffix[1:].isdigit() else 0
 
 
@@ -182,7 +182,7 @@ async def start_and_stop(times: int) -> None:
 
 
 def moving(times: int, folder: Path) -> None:
-    """End the system of a robot that moves, in three ways."""
+    """End the system of a moving robot in three ways."""
     for how in ("stop", "Ctrl-C", "kill -9"):
         good = sum(
             end_moving(how, folder / f"{how.replace(' ', '')}{number}") for number in range(times)
@@ -194,7 +194,7 @@ def moving(times: int, folder: Path) -> None:
 
 
 def end_moving(how: str, record: Path) -> bool:
-    """Start a robot, end its system while it moves, and return whether its wheels had stopped."""
+    """Start a robot, end its system while it moves, and return whether its wheels stopped."""
     env = {**os.environ, **isolated_environment(), "ROBOT_RECORD": str(record)}
     argv = [sys.executable, "-m", "tests.system.robot", "system"]
     with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, text=True) as process:
@@ -216,7 +216,7 @@ def end_moving(how: str, record: Path) -> bool:
 
 
 def main() -> int:
-    """Do everything, and return the exit status."""
+    """Run all checks, and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long the crowd runs")
     parser.add_argument("--times", type=int, default=100, help="how many starts and stops")

@@ -1,4 +1,4 @@
-"""The processes of a system: its guardian, and all whose environment has a mark."""
+"""The processes of a system: its guardian, and those with a mark in their environment."""
 
 from __future__ import annotations
 

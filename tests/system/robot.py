@@ -19,7 +19,7 @@ RECORD = "ROBOT_RECORD"
 
 
 class Wheels(Node):
-    """Writes each new speed that it is told, and that it ends. It does not stop by itself."""
+    """Records each new speed, and its own end. It does not stop by itself."""
 
     def __init__(self) -> None:
         super().__init__("wheels")
@@ -28,13 +28,13 @@ class Wheels(Node):
         self.create_timer(0.0, self.last)
 
     def drive(self, msg: Twist) -> None:
-        """Write a speed that is not the one before."""
+        """Record a speed if it has changed."""
         if msg.linear.x != self.speed:
             self.speed = msg.linear.x
             record(f"{self.speed:.1f}")
 
     async def last(self) -> None:
-        """Write that this node ends."""
+        """Record the end of this node."""
         try:
             await asyncio.Event().wait()
         finally:
@@ -42,7 +42,7 @@ class Wheels(Node):
 
 
 class Commander(Node):
-    """Drives, and says in the end that the wheels are to stop."""
+    """Drives, and commands the wheels to stop when it ends."""
 
     def __init__(self) -> None:
         super().__init__("commander")

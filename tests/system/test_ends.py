@@ -1,4 +1,4 @@
-"""The ends of a system that runs in a process of its own: signals, and what is left afterwards."""
+"""How a system in a process of its own ends: signals, and what is left afterwards."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ run(main)
 
 
 class Supervised:
-    """A system in a process of its own, whose processes have a mark.
+    """A system in a process of its own, whose processes are marked.
 
     Args:
         text: The program.
@@ -87,7 +87,7 @@ class Supervised:
         self.process.stdout.close()
 
     def wait_for(self, *texts: str) -> None:
-        """Read its output until there is a line that ends with each of the texts."""
+        """Read its output until each of the texts has ended a line."""
         assert self.process.stdout is not None
         while not all(any(line.endswith(text) for line in self.lines) for text in texts):
             line = self.process.stdout.readline()
@@ -95,7 +95,7 @@ class Supervised:
             self.lines.append(line.rstrip("\n"))
 
     def wait_until_nothing_is_left(self, limit_sec: float = 20.0) -> None:
-        """Wait until no process of it is left; fail after a time."""
+        """Wait until none of its processes is left; fail after a while."""
         for _ in range(round(limit_sec / 0.05)):
             if not left(self.mark):
                 return
@@ -107,7 +107,7 @@ class Supervised:
 def test_whatever_ends_the_supervisor_members_end_in_reverse_order_and_nothing_is_left(
     number: signal.Signals, tmp_path: Path
 ) -> None:
-    """A commander can tell its driver to stop, also when nobody reads what it prints meanwhile."""
+    """A commander can tell its driver to stop, even if nobody reads its output meanwhile."""
     file = tmp_path / "ends"
     text = SYSTEM.replace("MEMBER", repr(MEMBER)).replace("FILE", repr(str(file)))
     with Supervised(text.replace("TERM", "0.5")) as system:
@@ -130,7 +130,7 @@ def test_whatever_ends_the_supervisor_members_end_in_reverse_order_and_nothing_i
 def test_wheels_get_the_stop_of_their_commander_before_they_are_ended(
     number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """They do not stop by themselves here."""
+    """These wheels do not stop by themselves."""
     record = tmp_path / "record"
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
@@ -151,7 +151,7 @@ def test_wheels_get_the_stop_of_their_commander_before_they_are_ended(
 
 
 def test_a_second_ctrl_c_ends_all_at_once() -> None:
-    """Who presses it twice does not want to wait for programs that hang."""
+    """A user who presses it twice does not want to wait for programs that hang."""
     script = "trap '' INT TERM; echo up; while :; do sleep 1; done"
     text = (
         "from aionode.system import run\n"

@@ -1,4 +1,4 @@
-"""The merged log of a system: lines, files, and what is kept for reports."""
+"""The merged log of a system: lines, files, and the lines kept for reports."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from aionode.system._control_codes import has_codes, without_codes
 
 
 def test_each_line_has_its_time_and_the_name_of_its_member() -> None:
-    """A line that comes in parts is one line."""
+    """A line that arrives in parts is one line."""
     stream = io.StringIO()
     log = SystemLog(stream)
     log.add_member("driver")
@@ -45,7 +45,7 @@ def test_as_json_each_line_is_a_record() -> None:
 
 
 def test_names_have_colours_on_request() -> None:
-    """Two members have two."""
+    """Two members have two colours."""
     stream = io.StringIO()
     log = SystemLog(stream, color=True)
     for name in ("a", "b"):
@@ -58,7 +58,7 @@ def test_names_have_colours_on_request() -> None:
 
 
 def test_files_are_rotated_and_the_oldest_is_removed(tmp_path: Path) -> None:
-    """A robot that runs for a year does not fill its disk."""
+    """A robot that runs for a year must not fill its disk."""
     log = SystemLog(io.StringIO(), folder=tmp_path, max_bytes=100, backups=2)
     for number in range(10):
         log.write("driver", b"%040d\n" % number)
@@ -71,7 +71,7 @@ def test_files_are_rotated_and_the_oldest_is_removed(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_is_named_once_and_the_log_goes_on(tmp_path: Path) -> None:
-    """The robot runs without its files: its programs would wait for a log that nobody reads."""
+    """Otherwise the robot's programs would block on a log that nobody reads."""
     stream = io.StringIO()
     log = SystemLog(stream, folder=tmp_path)
     (tmp_path / "driver.log").symlink_to("/dev/full")
@@ -84,7 +84,7 @@ def test_a_full_disk_is_named_once_and_the_log_goes_on(tmp_path: Path) -> None:
 
 
 def test_lines_that_are_read_in_any_pieces_are_the_same_in_stream_and_files(tmp_path: Path) -> None:
-    """Large output is read in pieces that end anywhere."""
+    """Large output is read in chunks that end anywhere."""
     lines = [b"", b"a", b"b" * 70_000, b"\r", b"", b"c"]
     text = b"\n".join(lines)
     all_text = b"".join(lines).replace(b"\r", b"")  # a line that ended as in DOS
@@ -106,7 +106,7 @@ def test_lines_that_are_read_in_any_pieces_are_the_same_in_stream_and_files(tmp_
 
 
 def test_the_last_twenty_lines_of_a_member_are_kept() -> None:
-    """They are in the report when it has failed."""
+    """They are in the report if it fails."""
     log = SystemLog(io.StringIO())
     log.write("driver", b"".join(b"%d\n" % number for number in range(100)))
 
@@ -114,7 +114,7 @@ def test_the_last_twenty_lines_of_a_member_are_kept() -> None:
 
 
 def test_what_a_pipe_does_not_take_waits_and_blocks_nothing() -> None:
-    """Nobody has to read the log for the system to go on."""
+    """The system goes on even if nobody reads the log."""
     reading, writing = os.pipe()
     with os.fdopen(writing, "w") as stream:
         log = SystemLog(stream)
@@ -151,7 +151,7 @@ def test_what_a_pipe_does_not_take_waits_and_blocks_nothing() -> None:
 def test_of_the_codes_for_terminals_only_colours_pass(
     output: bytes, shown: list[bytes], size: int, tmp_path: Path
 ) -> None:
-    """A member could overwrite what others say, retitle the terminal, or fill the clipboard."""
+    """Others could overwrite other members' lines, retitle the terminal or fill the clipboard."""
     file = tmp_path / "out"
     with file.open("w") as stream:
         log = SystemLog(stream, folder=tmp_path)
@@ -176,7 +176,7 @@ def test_no_output_contains_more_than_text_and_colours(output: bytes) -> None:
 
 
 def test_a_name_of_a_member_stays_on_its_line() -> None:
-    """A launch file of others may give any."""
+    """Someone else's launch file may contain any name."""
     stream = io.StringIO()
     log = SystemLog(stream)
     log.write("a\n\x1b[2J", b"text\n")

@@ -1,4 +1,4 @@
-"""Programs in a system: what is started, restarted, stopped, and left behind."""
+"""Programs of a system are started, restarted and stopped, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SUPERVISED = f"while kill -0 {os.getpid()}"
 
 @pytest.fixture
 def output() -> io.StringIO:
-    """What the system under test prints."""
+    """The output of the system under test."""
     return io.StringIO()
 
 
@@ -54,7 +54,7 @@ def system(output: io.StringIO) -> System:
 
 
 def alive(pid: int | None) -> bool:
-    """Return whether there is such a process, which is no zombie."""
+    """Return whether a process exists and is not a zombie."""
     try:
         state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
     except FileNotFoundError:
@@ -79,7 +79,7 @@ async def test_a_program_runs_until_the_block_is_left(system: System) -> None:
 async def test_no_grandchild_is_left_even_one_that_forked_twice(
     system: System, tmp_path: Path
 ) -> None:
-    """It has another parent and another session than the program that started it."""
+    """Its parent and session differ from those of the program that started it."""
     child, orphan = tmp_path / "child", tmp_path / "orphan"
     script = f"sleep 1000 & echo $! >{child}; (setsid sh -c 'echo $$ >{orphan}; exec sleep 999' &)"
     async with system:
@@ -93,7 +93,7 @@ async def test_no_grandchild_is_left_even_one_that_forked_twice(
 
 
 async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_path: Path) -> None:
-    """A restart would find the old process's port or device in use."""
+    """Otherwise a restart would find its port or device in use."""
     orphan = tmp_path / "orphan"
     script = (
         f"(setsid sh -c 'echo $$ >{orphan}; exec sleep 999' &); while ! [ -s {orphan} ]; do :; done"
@@ -108,7 +108,7 @@ async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_pat
 async def test_what_becomes_another_program_meanwhile_is_not_lost(
     system: System, tmp_path: Path
 ) -> None:
-    """In that moment it has no environment, and so no token by which to know it."""
+    """During exec it has no environment, hence no token that identifies it."""
     changing = tmp_path / "changing"
     changing.write_text(f"#!/bin/sh\n[ $1 = 0 ] || exec {changing} $(($1 - 1))\nexec sleep 999\n")
     changing.chmod(0o755)
@@ -140,7 +140,7 @@ async def test_a_program_has_its_environment_and_folder_and_the_domain_of_its_sy
 
 
 def test_a_program_has_seven_seconds_after_sigint_and_five_after_sigterm(system: System) -> None:
-    """A node of aionode needs five seconds at most to end its callbacks."""
+    """An aionode node needs at most five seconds to end its callbacks."""
     member = system.process("driver", FOREVER)
 
     assert isinstance(member, ProcessMember)
@@ -148,7 +148,7 @@ def test_a_program_has_seven_seconds_after_sigint_and_five_after_sigterm(system:
 
 
 async def test_each_policy_restarts_what_it_says(system: System) -> None:
-    """A clean end is a failure for none of them."""
+    """None of them treats a clean exit as a failure."""
     async with system:
         for policy in ("never", "on-failure", "always"):
             system.process(policy, ["true"], restart=policy, min_delay_sec=0.0)
@@ -163,7 +163,7 @@ async def test_each_policy_restarts_what_it_says(system: System) -> None:
 
 
 async def test_a_program_that_is_killed_is_restarted_on_failure(system: System) -> None:
-    """Its signal is a failure."""
+    """An exit by a signal is a failure."""
     async with system:
         system.process("sleeper", FOREVER, restart="on-failure", min_delay_sec=0.0)
         await system.ready()
@@ -178,7 +178,7 @@ async def test_a_program_that_is_killed_is_restarted_on_failure(system: System) 
 
 
 async def test_restarts_have_a_limit(system: System) -> None:
-    """A program that fails at each start is given up, and its status is that of the system."""
+    """A program that fails at each start is given up, and the system exits with its status."""
     async with system:
         system.process(
             "failing", ["sh", "-c", "exit 3"], restart="always", max_restarts=2, min_delay_sec=0.0
@@ -193,7 +193,7 @@ async def test_restarts_have_a_limit(system: System) -> None:
 async def test_members_stop_in_reverse_order_each_after_the_one_before(
     system: System, tmp_path: Path
 ) -> None:
-    """A commander that ends has to be heard by the driver that it commands."""
+    """The driver must still run when its commander sends its last command."""
     ends = tmp_path / "ends"
     code = (
         "import signal, sys, time\n"
@@ -214,7 +214,7 @@ async def test_members_stop_in_reverse_order_each_after_the_one_before(
 async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_killed(
     system: System, output: io.StringIO, tmp_path: Path
 ) -> None:
-    """The supervisor does its work, and ends."""
+    """The supervisor does this itself, and then ends."""
     ends, orphan = tmp_path / "ends", tmp_path / "orphan"
     ending = f"trap 'sleep 0.05; echo $0 >>{ends}; exit' INT"
     script = f"{ending}; echo up; {SUPERVISED}; do sleep 0.01; done"
@@ -239,7 +239,7 @@ async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_kill
 
 
 async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(system: System) -> None:
-    """Nobody knows how, so it has failed."""
+    """Its exit status is unknown, so it counts as failed."""
     async with system:
         system.process("brief", FOREVER)
         await system.ready()
@@ -255,7 +255,7 @@ async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(syste
 async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_meanwhile(
     system: System,
 ) -> None:
-    """Nobody would wait for it in vain."""
+    """Otherwise the supervisor would wait forever."""
     script = f"trap '' INT; echo up; {SUPERVISED}; do sleep 0.1; done"
     async with system:
         system.process("slow", ["sh", "-c", script], term_after_sec=0.2)
@@ -271,7 +271,7 @@ async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_
 
 
 async def test_a_second_signal_kills_all_although_the_guardian_was_killed(system: System) -> None:
-    """Who presses Ctrl-C twice does not want to wait."""
+    """A user who presses Ctrl-C twice does not want to wait."""
     script = f"trap '' INT TERM; echo up; {SUPERVISED}; do sleep 1; done"
     async with system:
         system.process("deaf", ["sh", "-c", script])
@@ -295,7 +295,7 @@ async def test_a_program_that_ignores_signals_is_killed(system: System) -> None:
 
 
 async def test_ready_names_what_is_missing_and_shows_the_last_lines(system: System) -> None:
-    """An error that says "timeout" alone helps nobody."""
+    """An error that only says "timeout" helps nobody."""
     async with system:
         system.process(
             "driver",
@@ -311,7 +311,7 @@ async def test_ready_names_what_is_missing_and_shows_the_last_lines(system: Syst
 
 
 async def test_ready_fails_at_once_for_a_program_that_has_ended(system: System) -> None:
-    """What is awaited cannot come any more."""
+    """What is awaited can no longer happen."""
     async with system:
         system.process("driver", ["sh", "-c", "exit 4"], ready=NodeExists("/driver"))
         with pytest.raises(NotReadyError, match="ended with exit status 4"):
@@ -321,7 +321,7 @@ async def test_ready_fails_at_once_for_a_program_that_has_ended(system: System) 
 async def test_a_program_that_is_not_there_fails_and_says_so(
     system: System, output: io.StringIO
 ) -> None:
-    """A typo is named, and the others run."""
+    """A typo is reported, and the others run."""
     async with system:
         system.process("typo", ["no-such-program"])
         await system.wait()
@@ -334,7 +334,7 @@ async def test_a_program_that_is_not_there_fails_and_says_so(
 async def test_a_program_for_which_no_descriptor_is_left_fails_and_says_so(
     system: System, output: io.StringIO, room: int
 ) -> None:
-    """At whichever of its files the limit is reached; nothing of it stays open, and others run."""
+    """Whichever file hits the limit, nothing stays open and the others run."""
     limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     async with system:
         system.process("first", ["sleep", "60"])
@@ -361,7 +361,7 @@ async def test_a_program_for_which_no_descriptor_is_left_fails_and_says_so(
 
 
 async def test_a_member_starts_after_those_that_it_needs_are_ready(system: System) -> None:
-    """A node whose driver never comes is not started at all."""
+    """A node whose driver never becomes ready is not started."""
     async with system:
         system.process("driver", FOREVER, ready=NodeExists("/driver", 0.1))
         system.process("planner", FOREVER, after="driver")
@@ -372,7 +372,7 @@ async def test_a_member_starts_after_those_that_it_needs_are_ready(system: Syste
 
 
 async def test_a_required_member_ends_the_system(system: System, output: io.StringIO) -> None:
-    """The report says who ended first, how, and what it printed last."""
+    """The report names the first member to end, with its status and last lines."""
     async with system:
         system.process("sleeper", FOREVER)
         system.process("brain", ["sh", "-c", "echo out of memory; exit 9"], required=True)
@@ -386,7 +386,7 @@ async def test_a_required_member_ends_the_system(system: System, output: io.Stri
 async def test_the_exit_status_is_that_of_the_first_that_failed_for_good(
     system: System, tmp_path: Path
 ) -> None:
-    """Not of one that was started again and ended well, nor of those that follow."""
+    """Not that of a member that succeeded after a restart, nor of those that ended later."""
     script = "[ -e $0 ] || { : >$0; exit 2; }"
     async with system:
         again = ["sh", "-c", script, f"{tmp_path}/once"]
@@ -406,7 +406,7 @@ async def test_the_exit_status_is_that_of_the_first_that_failed_for_good(
 
 
 async def test_a_member_stops_and_starts_with_the_one_it_fails_with(system: System) -> None:
-    """A commander of a driver that has failed knows nothing of the new one."""
+    """A commander does not know that its driver was replaced."""
     async with system:
         system.process("driver", FOREVER, restart="on-failure", min_delay_sec=0.0)
         system.process("commander", FOREVER, fails_with="driver")
@@ -424,7 +424,7 @@ async def test_a_member_stops_and_starts_with_the_one_it_fails_with(system: Syst
 
 
 async def test_one_member_is_stopped_and_restarted_by_name(system: System) -> None:
-    """The others go on."""
+    """The others keep running."""
     async with system:
         for name in ("a", "b"):
             system.process(name, FOREVER)
@@ -444,7 +444,7 @@ async def test_one_member_is_stopped_and_restarted_by_name(system: System) -> No
 
 
 async def test_health_says_who_is_not_well(system: System) -> None:
-    """It is what /healthz answers."""
+    """That is the answer of /healthz."""
     async with system:
         system.process("good", FOREVER)
         system.process("bad", ["sh", "-c", "exit 1"])
@@ -465,7 +465,7 @@ class Beacon(Node):
 
 
 async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System) -> None:
-    """One class can be there twice, under two names."""
+    """A class can be used twice, under two names."""
     nodes: list[Beacon] = []
 
     def make() -> Beacon:
@@ -485,7 +485,7 @@ async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System)
 
 
 async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system: System) -> None:
-    """As tasks of this process, and as the command line of one of its own."""
+    """The same holds for tasks of this process and for the command line of a process."""
     shared: dict[str, Any] = {"remappings": {"/cmd_vel": "/left/speed"}, "namespace": "robot"}
     wheels = "tests.system.robot:Wheels"
     apart = system.node("apart", wheels, processes=True, cwd="/", **shared)
@@ -511,7 +511,7 @@ async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system:
 
 
 class Server(Node):
-    """Has one endpoint of each kind that is awaited."""
+    """A node with one endpoint of each kind that can be awaited."""
 
     def __init__(self) -> None:
         super().__init__("server")
@@ -521,7 +521,7 @@ class Server(Node):
 
 
 async def test_what_is_awaited_comes_with_the_node_that_has_it(system: System) -> None:
-    """A topic has a publisher, a service and an action have a server, a node is there."""
+    """A publisher of a topic, a server of a service or an action, or a node."""
     facts = [
         NodeExists("server", 5.0),
         TopicPublished(topic="words", timeout_sec=5.0),
@@ -544,7 +544,7 @@ async def test_what_is_awaited_comes_with_the_node_that_has_it(system: System) -
 
 
 async def test_a_node_that_fails_is_restarted(system: System) -> None:
-    """As a process is, by the same policy."""
+    """Like a process, by the same policy."""
     nodes: list[Beacon] = []
 
     def make() -> Beacon:
@@ -586,7 +586,7 @@ class Camera(LifecycleNode):
 async def test_managed_nodes_are_active_when_ready_and_brought_down_before_the_end(
     system: System,
 ) -> None:
-    """What needs them waits for their states, not for their processes; the order is kept."""
+    """Members that need them wait for their states, not just their processes."""
     Camera.moves.clear()
     async with system:
         system.node("lidar", lambda: Camera("lidar"))
@@ -610,7 +610,7 @@ async def test_managed_nodes_are_active_when_ready_and_brought_down_before_the_e
 
 
 def test_members_may_be_added_before_there_is_an_event_loop(output: io.StringIO) -> None:
-    """They start, in this order, as `async with` is entered."""
+    """They start in this order when `async with` is entered."""
     system = System("early", context=Context(transport="local"), log=SystemLog(output))
     system.process("first", ["sh", "-c", "echo first"])
     system.node("second", Beacon)

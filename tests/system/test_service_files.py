@@ -1,4 +1,4 @@
-"""A robot as a systemd service and in a container: the files of the documentation hold."""
+"""A robot as a systemd service and in a container, with the documentation's files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXAMPLES = ROOT / "examples"
 
 @pytest.fixture(scope="module")
 def instructions() -> list[tuple[str, str]]:
-    """The instructions of the Dockerfile, and what follows them."""
+    """Return the instructions of the Dockerfile with their arguments."""
     lines = (EXAMPLES / "Dockerfile").read_text(encoding="utf-8").splitlines()
     words = [line.partition(" ") for line in lines if not line.startswith("#")]
     return [(instruction, rest) for instruction, _, rest in words]
@@ -26,7 +26,7 @@ def instructions() -> list[tuple[str, str]]:
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
 def test_systemd_accepts_the_unit(tmp_path: Path) -> None:
-    """A key that is misspelt is ignored at the start, and found on the day when it is needed."""
+    """A misspelled key is ignored by systemd, and noticed only when it is needed."""
     unit = (EXAMPLES / "robot.service").read_text(encoding="utf-8")
     text, count = re.subn(r"ExecStart=\S+", f"ExecStart={sys.executable}", unit)
     assert count == 1
@@ -41,7 +41,7 @@ def test_systemd_accepts_the_unit(tmp_path: Path) -> None:
 
 
 def test_the_unit_signals_the_system_alone_and_gives_it_the_time_to_stop() -> None:
-    """Two members that hang take 12 s each; after the limit, all that is left is killed."""
+    """Two members that hang take 12 s each; after the limit, systemd kills what is left."""
     unit = (EXAMPLES / "robot.service").read_text(encoding="utf-8")
     program = re.search(r"ExecStart=\S+/python /opt/robot/(\S+)", unit)
 
@@ -52,7 +52,7 @@ def test_the_unit_signals_the_system_alone_and_gives_it_the_time_to_stop() -> No
 
 
 def test_the_image_has_what_the_package_is_built_from(instructions: list[tuple[str, str]]) -> None:
-    """No Docker is needed to see that a file, an extra or a Python is not there."""
+    """A missing file, extra or Python version can be found without Docker."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     copied = [word for name, rest in instructions if name == "COPY" for word in rest.split()[:-1]]
     extras = re.findall(r"\[([\w,]+)\]'", dict(instructions)["RUN"])[0].split(",")
@@ -66,7 +66,7 @@ def test_the_image_has_what_the_package_is_built_from(instructions: list[tuple[s
 
 
 def test_the_container_runs_the_robot_and_stops_it(instructions: list[tuple[str, str]]) -> None:
-    """The command is a list, so that the signal reaches the system and not a shell."""
+    """The command is a list, so that signals reach the system rather than a shell."""
     places = [rest.split() for name, rest in instructions if name == "COPY"]
     folder = next(
         source for source, place in (copied[-2:] for copied in places) if place == "/robot"

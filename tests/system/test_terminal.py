@@ -30,7 +30,7 @@ run(main)
 
 
 def test_a_program_that_reads_the_keyboard_has_the_terminal() -> None:
-    """It can switch the terminal to raw mode, as teleop programs do; its errors are in the log."""
+    """It can switch the terminal to raw mode, like teleop programs; its errors are in the log."""
     env = {**os.environ, "AIONODE_TRANSPORT": "local", "NO_COLOR": "1"}
     terminal = pexpect.spawn(sys.executable, ["-c", SYSTEM], env=env, timeout=30, encoding="utf-8")
     terminal.expect_exact("press")

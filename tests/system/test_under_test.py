@@ -1,4 +1,4 @@
-"""A whole system in a test."""
+"""A test of a whole system."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ aionode.run(Talker)
 
 
 async def test_a_file_is_started_in_a_domain_of_its_own_and_is_ready(tmp_path: Path) -> None:
-    """The test talks to it by a node in the same context."""
+    """The test talks to it through a node in the same context."""
     (tmp_path / "talker.py").write_text(TALKER)
     description = tmp_path / "robot.py"
     description.write_text(
@@ -83,7 +83,7 @@ async def test_a_launch_file_is_started_with_arguments_and_is_ready(
 async def test_a_node_of_a_launch_file_that_does_not_come_fails_with_its_last_lines(
     tmp_path: Path,
 ) -> None:
-    """In any of the languages; the name of the node says what is missing."""
+    """In each launch language; the error names the missing node."""
     file = tmp_path / "robot.launch.xml"
     camera = tmp_path / "camera.sh"
     camera.write_text("#!/bin/sh\necho no camera; exit 3\n")
@@ -96,7 +96,7 @@ async def test_a_node_of_a_launch_file_that_does_not_come_fails_with_its_last_li
 
 
 async def test_an_error_of_a_test_is_not_hidden_by_its_launch_file(tmp_path: Path) -> None:
-    """It is that of the assertion, and in no group."""
+    """The assertion's error is raised as it is, not in a group."""
     file = tmp_path / "robot.launch.py"
     file.write_text(LAUNCH)
 
@@ -106,7 +106,7 @@ async def test_an_error_of_a_test_is_not_hidden_by_its_launch_file(tmp_path: Pat
 
 
 async def test_a_bad_launch_file_is_refused_before_anything_starts(tmp_path: Path) -> None:
-    """Its own error has the file and the line."""
+    """The error has its file and line."""
     file = tmp_path / "robot.launch.py"
     file.write_text(LAUNCH)
     with pytest.raises(LaunchFileError, match=r"robot\.launch\.py:13: .*add robot:=VALUE"):
@@ -115,7 +115,7 @@ async def test_a_bad_launch_file_is_refused_before_anything_starts(tmp_path: Pat
 
 
 async def test_a_member_that_does_not_come_fails_with_its_last_lines() -> None:
-    """That is what the person who reads the failure of the test needs."""
+    """They explain the failure of the test."""
 
     async def main(system: System) -> None:
         code = "print('no camera'); import time; time.sleep(100)"
@@ -129,7 +129,7 @@ async def test_a_member_that_does_not_come_fails_with_its_last_lines() -> None:
 
 
 async def test_a_file_without_main_is_refused(tmp_path: Path) -> None:
-    """The text says what a file needs."""
+    """The error says what a file needs."""
     file = tmp_path / "empty.py"
     file.write_text("")
     with pytest.raises(ConfigurationError, match="async def main"):

@@ -1,4 +1,4 @@
-"""How much of the machine each process takes."""
+"""The processor time and memory of each process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from aionode.system._usage import UsageMeter
 
 
 def test_processor_and_memory_of_a_process_are_measured_until_it_has_ended() -> None:
-    """The share is that since the last look."""
+    """The processor share is that since the previous measurement."""
     meter = UsageMeter()
     meter.of(os.getpid())
     sum(range(1_000_000))
@@ -29,7 +29,7 @@ def test_processor_and_memory_of_a_process_are_measured_until_it_has_ended() -> 
 
 
 def test_without_psutil_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is an optional extra."""
+    """The package psutil is an optional extra."""
     monkeypatch.setitem(sys.modules, "psutil", None)
 
     assert UsageMeter().of(os.getpid()) == (None, None)
