@@ -26,6 +26,8 @@ YIELDING: Final = (
     "moveit_configs_utils",
     "nav2_common",
     "nav2_simple_commander",
+    "py_trees_ros",
+    "turtlebot4_navigation",
 )
 """The packages that yield to one with the same name in the workspace or installed."""
 A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")

@@ -14,7 +14,7 @@ INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)")
 PURE_PYTHON: Final = """
     action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics
     interactive_markers joint_state_publisher laser_geometry
-    py_trees_ros rclpy_message_converter
+    rclpy_message_converter
     resource_retriever ros2action ros2cli ros2component ros2doctor ros2interface
     ros2lifecycle ros2node ros2param ros2pkg ros2run ros2service ros2topic rosapi rosbridge_library
     rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros
@@ -33,6 +33,7 @@ INSTEAD: Final = {
     "osrf_pycommon": "`pip install osrf-pycommon` has it",
     "cv2": "`pip install 'aionode[opencv]'` brings it",
     "matplotlib": "`pip install 'aionode[desktop]'` brings it",
+    "py_trees": "`pip install 'aionode[py-trees]'` brings it",
     "requests": "`pip install 'aionode[desktop]'` brings it",
     "scipy": "`pip install 'aionode[desktop]'` brings it",
     "serial": "`pip install 'aionode[desktop]'` brings it",
@@ -53,7 +54,7 @@ ROS_1: Final = """
 """
 """Packages that exist only in ROS 1."""
 
-NOT_OF_ROS: Final = {"cv2", "matplotlib", "requests", "scipy", "serial", "transforms3d"}
+NOT_OF_ROS: Final = {"cv2", "matplotlib", "py_trees", "requests", "scipy", "serial", "transforms3d"}
 """Modules that ROS brings along, or that its programs use beside it."""
 
 

@@ -1,0 +1,5 @@
+"""Servers that stand in for a robot's."""
+
+from py_trees_ros.mock import actions, dock
+
+__all__ = ["actions", "dock"]
