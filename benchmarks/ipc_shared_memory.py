@@ -114,7 +114,7 @@ class End:
         assert buffer is not None  # noqa: S101  # there are descriptors enough
         self.step("copy")
         self._lent[buffer.number] = buffer
-        place = BufferRef(buffer.number, size).pack()
+        place = BufferRef(buffer.number, buffer.start, size).pack()
         data = b"".join(protocol.pack(Kind.RELEASE, number, 0, GID) for number in self._returned)
         data += protocol.pack(Kind.DATA, 0, 0, GID, place, in_shm=True)
         self._returned.clear()
@@ -158,10 +158,10 @@ class End:
             data = DECODE(one.payload).data
             np.frombuffer(data, np.uint64).max()
             return len(data)
-        number, size = BufferRef.unpack(one.payload)
+        number, start, size = BufferRef.unpack(one.payload)
         fd = int.from_bytes(ancillary[0][2], sys.byteorder) if ancillary else None
         returned = self._returned
-        view = self._mappings.view(number, size, fd, lambda: returned.append(number))
+        view = self._mappings.view(number, start, size, fd, lambda: returned.append(number))
         self.step("view")
         data = DECODE(view).data
         self.step("decode")

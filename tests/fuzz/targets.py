@@ -151,7 +151,7 @@ def run_frames(data: bytes) -> object:
 def frame_seeds() -> list[bytes]:
     """Return a stream of frames of every kind."""
     gid = bytes(range(16))
-    place = BufferRef(7, 200_000).pack()
+    place = BufferRef(7, 20, 200_000).pack()
     one = b"".join(
         protocol.pack(kind, 1, 2, gid, place, in_shm=True)
         if kind == Kind.DATA

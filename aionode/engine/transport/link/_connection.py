@@ -251,7 +251,7 @@ class Connection:
             if self._urgent or not self.write(data):
                 self._send_now_or_later(data, None)
         else:
-            reference = BufferRef(buffer.number, len(payload)).pack()
+            reference = BufferRef(buffer.number, buffer.start, len(payload)).pack()
             data = protocol.pack(kind, sequence, source_ns, gid, reference, in_shm=True)
             self._send_now_or_later(data, buffer)
 
@@ -509,13 +509,13 @@ class Connection:
             raise FrameError(f"{len(self._descriptors)} descriptors without their frames")
 
     def _map(self, frame: Frame) -> memoryview:
-        number, size = BufferRef.unpack(frame.payload)
+        number, start, size = BufferRef.unpack(frame.payload)
         fd = None
         if frame.has_fd:
             if not self._descriptors:
                 raise FrameError(f"expected the descriptor of buffer {number}, got none")
             fd = self._descriptors.popleft()
-        return self._mappings.view(number, size, fd, lambda: self._release_soon(number))
+        return self._mappings.view(number, start, size, fd, lambda: self._release_soon(number))
 
     def _release_soon(self, number: int) -> None:
         """Release a buffer of the other process; called on any thread, within any other call."""

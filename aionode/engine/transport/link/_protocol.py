@@ -61,7 +61,7 @@ Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
 running its callback inline.
 """
 
-VERSION: Final = 3
+VERSION: Final = 4
 """Version of this format; only contexts with equal versions can be linked."""
 
 GID_SIZE: Final = 16
@@ -89,7 +89,7 @@ FLAGS: Final = (0, IN_SHM, HAS_FD)
 
 FLAGS_AT: Final = 5
 
-BUFFER_REF: Final = struct.Struct("<QQ")
+BUFFER_REF: Final = struct.Struct("<QQQ")
 
 
 class Kind(enum.IntEnum):
@@ -164,12 +164,14 @@ class BufferRef(NamedTuple):
 
     number: int
     """Identifies the shared buffer; the sender gets it back with `Release`."""
+    start: int
+    """Where the payload starts in the buffer, in bytes."""
     size: int
-    """Size of the payload in bytes; it starts at the beginning of the buffer."""
+    """Size of the payload in bytes."""
 
     def pack(self) -> bytes:
         """Return it as the payload of a frame."""
-        return BUFFER_REF.pack(self.number, self.size)
+        return BUFFER_REF.pack(*self)
 
     @classmethod
     def unpack(cls, data: bytes) -> BufferRef:

@@ -134,8 +134,12 @@ class LinkWriter(Writer):
         pool = self._registry.pool
         size = sum(map(len, parts))
         buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
-        payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
         in_shm = buffer is not None
+        payload = (
+            b"".join(parts)
+            if buffer is None
+            else BufferRef(buffer.number, buffer.start, size).pack()
+        )
         data = protocol.pack(DATA, sequence, source_ns, self._gid, payload, in_shm=in_shm)
         for send_queue in self._targets:
             send_queue.send(sequence, data, buffer)

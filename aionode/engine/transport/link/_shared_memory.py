@@ -5,6 +5,9 @@ far more than the copy. The buffer is sealed: it cannot shrink, and its receiver
 it. The first frame to a process carries the buffer's descriptor; the receiver maps the buffer
 read-only, decodes in place, and keeps the mapping, so later frames only contain the buffer's
 number. When the last array that refers to a payload is gone, the receiver releases the buffer.
+
+The largest part of a payload, such as the pixels of an image, starts at a multiple of `ALIGNMENT`:
+reading 4 MB as 64-bit numbers takes numpy three times as long if they are not aligned.
 """
 
 from __future__ import annotations
@@ -59,6 +62,9 @@ SEALS: Final = 0x0002 | 0x0004
 
 PAGE: Final = mmap.PAGESIZE
 
+ALIGNMENT: Final = 64
+"""Alignment of a payload's largest part in bytes: a cache line, and the widest vector."""
+
 
 # Sending
 
@@ -71,15 +77,17 @@ class SharedBuffer:
             forever.
         size: Its size in bytes.
         fd: Its descriptor.
+        start: Where its payload starts, in bytes.
         users: Number of queues and receivers that hold it.
         retired: Whether it must not be reused, as a receiver may never release it.
     """
 
-    __slots__ = ("_map", "fd", "number", "retired", "size", "users")
+    __slots__ = ("_map", "fd", "number", "retired", "size", "start", "users")
 
     def __init__(self, number: int, size: int) -> None:
         self.number = number
         self.size = size
+        self.start = 0
         self.users = 0
         self.retired = False
         self.fd = os.memfd_create("aionode", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
@@ -91,17 +99,17 @@ class SharedBuffer:
             os.close(self.fd)
             raise
 
-    def fill(self, parts: Sequence[Data]) -> None:
-        """Copy `parts`, which must fit, to the start, one after the other."""
-        place = 0
+    def fill(self, parts: Sequence[Data], start: int) -> None:
+        """Copy `parts`, which must fit, one after the other, from `start` on."""
+        self.start = place = start
         for part in parts:
             end = place + len(part)
             self._map[place:end] = part
             place = end
 
     def read(self, size: int) -> bytes:
-        """Return a copy of the first `size` bytes, to send them without the buffer."""
-        return self._map[:size]
+        """Return a copy of the payload of `size` bytes, to send it without the buffer."""
+        return self._map[self.start : self.start + size]
 
     def close(self) -> None:
         """Close it; processes that have mapped it can still read it."""
@@ -139,13 +147,14 @@ class BufferPool:
             parts = (parts,)
         if size is None:
             size = sum(map(len, parts))
-        buffer = self._taken(size)
+        start = start_of(parts)
+        buffer = self._taken(start + size)
         if buffer is None:
             try:
-                buffer = SharedBuffer(next(self._numbers), rounded(size))
+                buffer = SharedBuffer(next(self._numbers), rounded(start + size))
             except OSError:  # out of descriptors or memory: the payload goes through the stream
                 return None
-        buffer.fill(parts)
+        buffer.fill(parts, start)
         buffer.users = 1
         return buffer
 
@@ -184,6 +193,12 @@ class BufferPool:
             self._close(self._idle.pop())
 
 
+def start_of(parts: Sequence[Data]) -> int:
+    """Return where a payload has to start for its largest part to be aligned, in bytes."""
+    sizes = [len(part) for part in parts]
+    return -sum(sizes[: sizes.index(max(sizes))]) % ALIGNMENT
+
+
 def rounded(size: int) -> int:
     """Return the buffer size for `size` bytes; unused pages cost nothing."""
     step = max(PAGE, (1 << size.bit_length()) // (2 * STEPS))
@@ -212,12 +227,13 @@ class BufferMappings:
         return len(self._maps)
 
     def view(
-        self, number: int, size: int, fd: int | None, done: Callable[[], object]
+        self, number: int, start: int, size: int, fd: int | None, done: Callable[[], object]
     ) -> memoryview:
-        """Return the first `size` bytes of a buffer, read-only.
+        """Return a payload in a buffer, read-only.
 
         Args:
             number: The buffer's number.
+            start: Where the payload starts in it, in bytes.
             size: The size of the payload in bytes.
             fd: The buffer's descriptor, if it came with the frame; it is closed.
             done: Called once, on any thread, when nothing refers to this payload any more: no view,
@@ -225,23 +241,26 @@ class BufferMappings:
                 `close`.
 
         Raises:
-            FrameError: the buffer is unknown, not sealed, or smaller than `size`.
+            FrameError: the buffer is unknown or not sealed, or the payload is not within it.
         """
         if fd is not None:
             if len(self._maps) >= MAX_MAPPINGS:
                 os.close(fd)
                 raise FrameError(f"more than {MAX_MAPPINGS} shared buffers")
-            self._maps[number] = sealed_map(fd, size)
+            self._maps[number] = sealed_map(fd, start + size)
         mapping = self._maps.get(number)
         if mapping is None:
             raise FrameError(f"the descriptor of shared buffer {number} is missing")
-        if not 0 < size <= len(mapping):
-            raise FrameError(f"a payload of {size} bytes in a shared buffer of {len(mapping)}")
+        if not 0 < size <= len(mapping) - start:
+            raise FrameError(
+                f"a payload of {size} bytes from byte {start} on, in a shared buffer of "
+                f"{len(mapping)}"
+            )
         import numpy as np
 
         # A slice of a view only keeps the object behind the view alive. So each payload gets an
         # object of its own that can be weakly referenced; payloads share a mapping.
-        payload: Any = np.frombuffer(mapping, np.uint8, size)
+        payload: Any = np.frombuffer(mapping, np.uint8, size, start)
         watch = weakref.ref(payload, self._on_gone)  # weakref.finalize costs three times as much
         self._watched[id(watch)] = watch, done
         return memoryview(payload)

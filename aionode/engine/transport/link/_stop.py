@@ -46,7 +46,7 @@ class LinkStop(StopSender):
         if routes.send_queues and len(payload) >= SHARED_FROM:
             buffer = pool.filled(payload)
         if buffer is not None:
-            payload = BufferRef(buffer.number, len(payload)).pack()
+            payload = BufferRef(buffer.number, buffer.start, len(payload)).pack()
         data = protocol.pack(
             DATA, sequence, source_ns, self._gid, payload, in_shm=buffer is not None
         )
