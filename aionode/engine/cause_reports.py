@@ -1,4 +1,4 @@
-"""What a context tells of its log of causes when a tool asks: entries, or the latest runs."""
+"""What a context reports from its log of causes when a tool asks: entries, or the latest runs."""
 
 from __future__ import annotations
 
@@ -30,30 +30,30 @@ __all__ = [
 ]
 
 LARGEST_REPORT: Final = 16 * 2**20
-"""The most bytes of an answer of another process that are read."""
+"""Maximum bytes of an answer of another process."""
 
 MOST_TOLD: Final = 200
-"""How many entries a context tells at most when it is asked for one and what led to it."""
+"""Maximum number of entries in the answer to a question for single ones and their causes."""
 
 MOST_AT_ONCE: Final = 1000
-"""How many runs, and how many entries, a context tells at once when it is asked for all."""
+"""Maximum number of runs, and of entries, in the answer to a question for all."""
 
 T = TypeVar("T")
 
 Word: TypeAlias = Annotated[str, msgspec.Meta(max_length=1000)]
-"""A text of a bounded length: each thing that is kept refers to the report that tells of it."""
+"""A text of bounded length: each kept item keeps a reference to its report."""
 
 Key = tuple[Kind, bytes, int]
-"""What identifies something that was sent: its kind, gid and sequence number."""
+"""What identifies a sent item: its kind, gid and sequence number."""
 
 
 class CauseQuestion(msgspec.Struct, array_like=True):
-    """What a tool wants to know.
+    """The question of a tool.
 
     Attributes:
-        name: The latest thing sent by this name: of a topic, service, action, node or goal.
-        keys: The entries with these keys.
-        since: All runs and entries from these numbers on; None for none.
+        name: For the latest item sent with this name, of a topic, service, action, node or goal.
+        keys: For the entries with these keys.
+        since: For all runs and entries from these numbers on; None for none.
     """
 
     name: str = ""
@@ -62,15 +62,15 @@ class CauseQuestion(msgspec.Struct, array_like=True):
 
 
 class RunReport(msgspec.Struct, array_like=True):
-    """One call of a callback, or something that a task has awaited.
+    """One call of a callback, or an item that a task has awaited.
 
     Attributes:
-        kind: What was taken: ``message``, ``request``, ``response``, ``goal`` or ``timer``.
-        party: Who took it, such as ``subscription``.
+        kind: Its input: ``message``, ``request``, ``response``, ``goal`` or ``timer``.
+        party: What received the input, such as ``subscription``.
         node: The full name of its node.
         name: The topic, service or action; the period of a timer.
         callback: The name of the callback; empty if it was awaited.
-        gid: The gid of what was taken.
+        gid: The gid of the input.
         sequence: Its sequence number.
         entered_ns: When it arrived, by the clock of the process.
         began_ns: When the callback was called.
@@ -90,11 +90,11 @@ class RunReport(msgspec.Struct, array_like=True):
 
 
 class SentReport(msgspec.Struct, array_like=True):
-    """Something that was sent.
+    """A sent item.
 
     Attributes:
         kind: What it is; for ``timer``, its start by a callback.
-        party: Who sent it, such as ``publisher``.
+        party: What sent it, such as ``publisher``.
         node: The full name of its node.
         name: The topic, service or action; the period of a timer.
         gid: Its gid.
@@ -116,18 +116,18 @@ class SentReport(msgspec.Struct, array_like=True):
 
 
 class CauseReport(msgspec.Struct):
-    """What one context answers.
+    """The answer of one context.
 
     Attributes:
         participant: The id of the context in the graph, in hexadecimal.
         host: The name of the host.
         pid: The id of the process.
         program: The command line, shortened.
-        clock: Identifies the clock: processes with the same text have the same one.
-        now_ns: When this was told, by that clock.
+        clock: Identifies the clock: processes with the same text share one.
+        now_ns: The time of the answer, by that clock.
         is_kept: Whether it keeps causes at all.
-        sent: What was sent, the oldest first.
-        runs: Runs that have ended, the first to end first.
+        sent: The sent items, the oldest first.
+        runs: Runs that have ended, in the order of their ends.
         begin: The numbers of the first run and the first entry that were still kept.
         next: The numbers of the next ones.
     """
@@ -147,7 +147,7 @@ class CauseReport(msgspec.Struct):
 
 @cache
 def clock_id() -> str:
-    """Return what processes share that read the same clock: one boot of one kernel."""
+    """Return the identity of the clock, which is shared by all processes of one boot."""
     try:
         return Path("/proc/sys/kernel/random/boot_id").read_text().strip()
     except OSError:
@@ -155,7 +155,7 @@ def clock_id() -> str:
 
 
 def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> CauseReport:
-    """Return the answer of a context with this log; None for one that keeps no causes."""
+    """Return the answer of a context with a log of causes, or with None if it keeps none."""
     same = unchanging()
     report = CauseReport(
         participant, same["host"], os.getpid(), same["program"], clock_id(), perf_ns(),
@@ -176,7 +176,7 @@ def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> C
 
 
 def add_all(report: CauseReport, log: CauseLog, since: tuple[int, int]) -> None:
-    """Add all runs and entries from some numbers on that are still kept, up to a number of each."""
+    """Add the kept runs and entries from the given numbers on, up to a limit."""
     first_run, runs = newer(list(log.runs), log.runs_counted, since[0])
     first_sent, sent = newer(list(log.sent), log.sent_counted, since[1])
     report.runs = [run_report(run) for run in runs]
@@ -186,19 +186,19 @@ def add_all(report: CauseReport, log: CauseLog, since: tuple[int, int]) -> None:
 
 
 def newer(kept: list[T], count: int, since: int) -> tuple[int, list[T]]:
-    """Return those of the kept items that have this number or a higher one, and the first one's."""
+    """Return the number of the first kept item from `since` on, and the items from there."""
     oldest = count - len(kept)
     begin = min(max(since, oldest), count)
     return begin, kept[begin - oldest :][:MOST_AT_ONCE]
 
 
 def key_of(sent: Sent) -> Key:
-    """Return what identifies something sent."""
+    """Return the key of a sent item."""
     return sent.kind, sent.gid, sent.sequence
 
 
 def latest(entries: list[Sent], name: str) -> list[Sent]:
-    """Return the latest entry by this name; of a node, what it has sent last of each name."""
+    """Return the latest entry with this name; for a node, the latest of each name."""
     full = "/" + name.lstrip("/")
     found: dict[str, Sent] = {}
     of_node: dict[tuple[str, str], Sent] = {}
@@ -215,12 +215,12 @@ def latest(entries: list[Sent], name: str) -> list[Sent]:
 
 
 def is_internal(name: str) -> bool:
-    """Return whether a name is one of the parts of an action, or ROS's own."""
+    """Return whether a name belongs to the parts of an action, or to ROS itself."""
     return "/_action/" in name or name in {"/rosout", "/parameter_events"}
 
 
 def with_causes(wanted: Iterable[Sent], by_key: dict[Key, Sent]) -> list[Sent]:
-    """Return entries with all that led to them in this process, the nearest first."""
+    """Return entries with everything that led to them in this process, the nearest first."""
     found: dict[Key, Sent] = {}
     left = list(wanted)
     for sent in left:  # which grows meanwhile
@@ -235,7 +235,7 @@ def with_causes(wanted: Iterable[Sent], by_key: dict[Key, Sent]) -> list[Sent]:
 
 
 def run_report(run: Run) -> RunReport:
-    """Return a run as it is told."""
+    """Return the report of a run."""
     party: Party = run.party
     return RunReport(
         run.kind, party.kind, party.node, party.name, party.callback() if run.is_call else "",
@@ -244,7 +244,7 @@ def run_report(run: Run) -> RunReport:
 
 
 def reported(sent: Sent) -> SentReport:
-    """Return an entry as it is told."""
+    """Return the report of an entry."""
     party = sent.party
     return SentReport(
         sent.kind, party.kind, party.node, party.name, sent.gid, sent.sequence, sent.at_ns,
@@ -264,7 +264,7 @@ def encoded(told: CauseQuestion | CauseReport) -> bytes:
 
 
 def decoded(data: bytes) -> CauseReport | None:
-    """Return the answer of another process; None if it is none that is known here."""
+    """Return the answer of another process; None if this version cannot read it."""
     if len(data) > LARGEST_REPORT:
         return None
     try:
@@ -274,7 +274,7 @@ def decoded(data: bytes) -> CauseReport | None:
 
 
 def asked(data: bytes) -> CauseQuestion:
-    """Return a question of another process; one for nothing if it is none that is known here."""
+    """Return a question of another process; an empty one if this version cannot read it."""
     try:
         return QUESTIONS.decode(data)
     except UNREADABLE:

@@ -1,13 +1,13 @@
-"""Keeps what caused each message, request, response, goal and call of a timer.
+"""Records what caused each message, request, response, goal and timer call.
 
-A *run* is one call of a callback, with what it took: a message, a request, a goal, the tick of a
+A *run* is one call of a callback with its input: a message, a request, a goal, or the tick of a
 timer. `CAUSES` holds the runs that the current task acts for; it is a context variable, so tasks,
-threads of `offload` and callbacks of the event loop inherit it. What is sent is noted in the log of
-its context with these runs. Both are bounded; what is older is forgotten.
+threads of `offload` and callbacks of the event loop inherit it. What is sent is recorded with these
+runs in the log of its context. Both are bounded: the oldest are dropped.
 
-A message is identified by the gid of its publisher and its sequence number, which every message
-carries anyway, a request and its response by those of the client. So nothing is added to what is
-sent, and the log of one process tells which entry of another's came before.
+A message is identified by its publisher's gid and its sequence number, which every message carries
+anyway; a request and its response by those of the client. So nothing is added to what is sent, and
+the log of one process refers to the entries of another.
 """
 
 from __future__ import annotations
@@ -42,25 +42,25 @@ __all__ = [
 Kind: TypeAlias = Literal["message", "request", "response", "goal", "timer"]
 
 MOST_KEPT: Final = 4096
-"""How many things sent, and how many runs, a context keeps: about 2 MB of each."""
+"""How many sent items, and how many runs, a context keeps: about 2 MB of each."""
 
 MOST_SENDERS: Final = 1024
-"""How many publishers, clients and services have their last thing kept, however old it is."""
+"""For how many publishers, clients and services the last item is kept, however old."""
 
 MOST_CAUSES: Final = 8
-"""How many runs something is caused by at most, the latest."""
+"""Maximum number of causes of an item; the latest are kept."""
 
 
 class Party:
-    """Something that sends or takes: an endpoint, a timer or an action server.
+    """Something that sends or receives: an endpoint, a timer or an action server.
 
-    It outlives the entity itself in the log, so it refers to none.
+    It outlives its entity in the log, so it does not refer to it.
 
     Attributes:
         kind: ``publisher``, ``subscription``, ``client``, ``server``, ``timer``, ``action client``
             or ``action server``.
         node: The full name of its node.
-        name: Its full name; for a timer its period.
+        name: Its full name; for a timer, its period.
         gid: The 16 bytes that identify it.
         callback: Returns the name of its callback; empty if it has none.
     """
@@ -87,17 +87,17 @@ class Run:
     """One call of a callback; or a message or response that a task has awaited.
 
     Attributes:
-        party: Who took something.
-        kind: What it took.
-        gid: The gid of what it took.
+        party: What received the input.
+        kind: The kind of the input.
+        gid: The gid of the input.
         sequence: Its sequence number.
-        entered_ns: When it arrived, by `perf_ns`.
+        entered_ns: When the input arrived, by `perf_ns`.
         began_ns: When the callback was called.
         ended_ns: When the callback had ended; 0 before.
         is_call: Whether it is the call of a callback.
         log: Where it is kept once it has ended; None for what was awaited.
-        shared: What tasks that it has started took, each with its task, and the cancellation of a
-            goal, with None.
+        shared: What tasks that it started have awaited, each with its task; and the cancellation of
+            a goal, with None.
     """
 
     __slots__ = (
@@ -128,7 +128,7 @@ class Run:
         self.shared: list[tuple[Run, weakref.ref[asyncio.Task[Any]] | None]] = []
 
     def end(self, now_ns: int) -> None:
-        """Note that the callback has ended."""
+        """Record the end of the callback."""
         if not self.ended_ns and self.log is not None:
             self.ended_ns = now_ns
             self.log.runs.append(self)
@@ -144,11 +144,11 @@ class Run:
 
 
 class Sent(NamedTuple):
-    """Something that was sent.
+    """A sent item.
 
     Attributes:
         kind: What it is.
-        party: Who sent it.
+        party: What sent it.
         gid: Its gid: that of the publisher; of the client for a request, its response and a goal.
         sequence: Its sequence number.
         at_ns: When it was sent, by `perf_ns`.
@@ -172,8 +172,8 @@ CAUSES: ContextVar[tuple[Run, ...]] = ContextVar("aionode_causes", default=())
 def acting_for() -> tuple[Run, ...]:
     """Return the runs that cause what the current task sends now.
 
-    What a task of the same callback took counts once that task has ended: until then nobody can
-    have used it but that task.
+    Input of another task of the same callback counts once that task has ended: until then, only
+    that task can have used it.
     """
     causes = CAUSES.get()
     if not any(run.shared for run in causes):
@@ -188,9 +188,9 @@ def acting_for() -> tuple[Run, ...]:
 
 
 def add_cause(*runs: Run) -> None:
-    """Have what the current task sends from now on be caused by `runs` too.
+    """Add `runs` to the causes of what the current task sends from now on.
 
-    A run takes the place of the one before it of the same party, unless that is the callback's own.
+    A run replaces an earlier one of the same party, unless that is the callback's own.
     """
     causes = list(CAUSES.get())
     for run in runs:
@@ -214,8 +214,8 @@ def add_cause(*runs: Run) -> None:
 def take(run: Run) -> None:
     """Add a cause that the current task has awaited.
 
-    Other tasks of its callback are caused by it as well once this one has ended. What is awaited is
-    never the first cause of a task that has others, so that no chain of runs grows.
+    Once the task has ended, it is a cause for the other tasks of its callback as well. It is never
+    the first cause of a task that has others, so that chains of runs do not grow.
     """
     causes = CAUSES.get()
     add_cause(run)
@@ -228,19 +228,19 @@ def take(run: Run) -> None:
 
 
 def note_end(now_ns: int) -> None:
-    """Note that the callback for which the current task acts has ended."""
+    """Record the end of the callback for which the current task acts."""
     for run in CAUSES.get()[:1]:  # the callback's own is the first
         run.end(now_ns)
 
 
 class Listener(Protocol):
-    """Is told of what a log keeps."""
+    """Is notified of each new entry of a log."""
 
     def note_sent(self, sent: Sent) -> None:
-        """Take something that was sent."""
+        """Process a sent item."""
 
     def note_end(self, run: Run) -> None:
-        """Take a callback that has ended."""
+        """Process a callback that has ended."""
 
 
 class CauseLog:
@@ -249,10 +249,10 @@ class CauseLog:
     Entries are added from any thread: each is one step of a deque.
 
     Attributes:
-        sent: What was sent last, the oldest first.
-        listeners: Are told of each, at once.
-        sent_counted: How many things were ever sent.
-        runs: The callbacks that ended last, the first to end first.
+        sent: The items sent last, the oldest first.
+        listeners: Notified of each entry immediately.
+        sent_counted: How many items were ever sent.
+        runs: The callbacks that ended last, in the order of their ends.
         runs_counted: How many have ever ended.
     """
 
@@ -274,7 +274,7 @@ class CauseLog:
         goal: bytes = b"",
         causes: tuple[Run, ...] | None = None,
     ) -> None:
-        """Add something that is being sent, by the current task unless its causes are given."""
+        """Record an item that is being sent, by the current task unless its causes are given."""
         if causes is None:
             causes = acting_for()
         sent = Sent(kind, party, gid or party.gid, sequence, perf_ns(), causes, goal)
@@ -285,7 +285,7 @@ class CauseLog:
         self._last.put((kind, party.gid, party.name), sent)
 
     def begin(self, party: Party, kind: Kind, gid: bytes, sequence: int, entered_ns: int) -> Run:
-        """Add a run, which the current task acts for from now on; return it."""
+        """Begin a run, for which the current task acts from now on, and return it."""
         run = Run(party, kind, gid, sequence, entered_ns, perf_ns())
         run.is_call = True
         run.log = self

@@ -1,7 +1,7 @@
-"""What a context tells of itself when somebody asks: the counts of its endpoints and callbacks.
+"""What a context reports about itself on request: the counts of its endpoints and callbacks.
 
 Everything here is counted anyway. Nothing is collected, sent or computed before a tool asks, and
-durations go as histograms, so that the one who asks computes the percentiles.
+durations are sent as histograms, so that the tool computes the percentiles.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ __all__ = [
 ]
 
 LARGEST_REPORT: Final = 16 * 2**20
-"""The most bytes of a report of another process that are read."""
+"""Maximum bytes of a report of another process."""
 
 MOST_TEXT: Final = 300
-"""Most characters of the command line of a process."""
+"""Maximum characters of the command line of a process."""
 
 
 class DurationReport(msgspec.Struct, array_like=True):
@@ -79,7 +79,7 @@ class NodeReport(msgspec.Struct):
     Attributes:
         name: Its full name.
         is_running: Whether it calls callbacks.
-        unfinished: How many callbacks have begun and await something.
+        unfinished: How many callbacks have started and await something.
         entities: Its endpoints, timers and actions, without infrastructure.
     """
 
@@ -90,7 +90,7 @@ class NodeReport(msgspec.Struct):
 
 
 class ProcessReport(msgspec.Struct):
-    """One context, and the process in which it is.
+    """One context and its process.
 
     Attributes:
         participant: The id of the context in the graph, in hexadecimal.
@@ -99,14 +99,14 @@ class ProcessReport(msgspec.Struct):
         program: The command line, shortened.
         version: The version of aionode.
         python: The version of Python.
-        now_ns: When this was told, by a clock of the process that counts from anywhere.
+        now_ns: The time of the report, by a clock of the process with an arbitrary start.
         cpu_ns: Processor time of the process, in nanoseconds.
         memory_bytes: Memory of the process that is in use; 0 if unknown.
         load: The load of the host over a minute; 0 if unknown.
         cores: The processors of the host.
-        processor_waits: How many callbacks took too long since no processor was free.
-        processor_waited_ns: How long these waited in all, in nanoseconds.
-        dropped: What of others was dropped or refused, by the reason: see `Context.dropped`.
+        processor_waits: How many callbacks took too long because no processor was free.
+        processor_waited_ns: How long these waited in total, in nanoseconds.
+        dropped: How much input was dropped or refused, by reason: see `Context.dropped`.
         nodes: Its nodes.
     """
 
@@ -129,7 +129,7 @@ class ProcessReport(msgspec.Struct):
 
 @cache
 def unchanging() -> dict[str, Any]:
-    """Return what stays the same while the process runs; looking it up takes a while."""
+    """Return what stays the same while the process runs, and takes a while to look up."""
     return {
         "host": socket.gethostname(),
         "program": " ".join(sys.argv)[:MOST_TEXT] or sys.executable,
@@ -142,7 +142,7 @@ def unchanging() -> dict[str, Any]:
 def process_report(
     participant: str, dropped: Mapping[str, int], reporters: Iterable[Callable[[], NodeReport]]
 ) -> ProcessReport:
-    """Return the report of a context, whose nodes are told by `reporters`."""
+    """Return the report of a context, whose nodes are reported by `reporters`."""
     return ProcessReport(
         participant=participant,
         pid=os.getpid(),
@@ -159,7 +159,7 @@ def process_report(
 
 
 def memory_bytes() -> int:
-    """Return how much memory of this process is in use; 0 where the system does not tell."""
+    """Return how much memory this process uses; 0 where that is unknown."""
     try:
         with open("/proc/self/statm", "rb") as file:  # noqa: PTH123  # no path is made of it
             return int(file.read(200).split()[1]) * os.sysconf("SC_PAGE_SIZE")
@@ -177,7 +177,7 @@ def encoded(report: ProcessReport) -> bytes:
 
 
 def decoded(data: bytes) -> ProcessReport | None:
-    """Return the report in an answer of another process; None if it is none that is known here."""
+    """Return the report of another process; None if this version cannot read it."""
     if len(data) > LARGEST_REPORT:
         return None
     try:

@@ -1,4 +1,4 @@
-"""What all processes of a system count, asked from one of them.
+"""The counts of all processes of a system, and the causes of their messages.
 
 ::
 
@@ -7,16 +7,16 @@
         print(process.program, process.memory_bytes)
     print(snapshot.silent, snapshot.older)
 
-Every context of aionode answers with the counts that its endpoints and callbacks keep anyway: no
-message is subscribed to, and nothing runs while nobody asks. Two snapshots give rates: `rates`.
+Every aionode context answers with counts that its endpoints and callbacks keep anyway: nothing is
+subscribed to, and nothing runs while nobody asks. `rates` computes rates from two snapshots.
 
-`why` tells what led to the last message of a topic, from callback to callback and from process to
-process; `to_chains` prints it. Contexts keep what that needs if they were asked to:
-``AIONODE_CAUSES=1`` or ``Context(causes=True)``. `record_trace` has their callbacks on one axis of
-time, for Perfetto, and `export_spans` hands them to OpenTelemetry. A `CauseRecorder` has them as
-texts for a recording, from which `RecordedCauses` answers later.
+`why` returns what led to the last message of a topic, from callback to callback and from process to
+process; `to_chains` formats it. Contexts keep the data for it only on request:
+``AIONODE_CAUSES=1`` or ``Context(causes=True)``. `record_trace` records their callbacks on a common
+time axis for Perfetto, and `export_spans` exports them to OpenTelemetry. `CauseRecorder` turns them
+into texts for a recording, from which `RecordedCauses` answers later.
 
-`picture_of` is the graph as something to draw: `to_text`, `to_dot`, `to_mermaid` and `to_svg`.
+`picture_of` returns the graph for drawing by `to_text`, `to_dot`, `to_mermaid` and `to_svg`.
 """
 
 from aionode.engine.observation import DurationReport, EntityReport, NodeReport, ProcessReport

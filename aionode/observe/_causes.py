@@ -1,4 +1,4 @@
-"""Why something was sent: what led to it, asked from the processes that took part."""
+"""Why something was sent: its causes, queried from the processes that took part."""
 
 from __future__ import annotations
 
@@ -33,35 +33,35 @@ if TYPE_CHECKING:
 __all__ = ["Cause", "Caused", "Findings", "Sender", "Why", "named_in", "senders_in", "why"]
 
 MOST_ROUNDS: Final = 64
-"""How often processes are asked for what came before, at most: how many there are in a chain."""
+"""Maximum number of rounds of questions for earlier causes, hence of processes in a chain."""
 
 MOST_ENTRIES: Final = 1000
-"""How many things that were sent are followed back, at most."""
+"""Maximum number of sent items that are traced back."""
 
 MOST_DRAWN: Final = 2 * MOST_ENTRIES
-"""How many things that were sent a tree shows with their causes, at most."""
+"""Maximum number of sent items that a tree shows with their causes."""
 
 Unknown: TypeAlias = Literal[
     "", "no aionode", "older", "silent", "not kept", "not sent", "forgotten", "above", "too far",
     "hidden",
 ]  # fmt: skip
-"""Why the causes of something are not known: its process is none of aionode's, is too old, does not
-answer, keeps none, or has sent nothing yet; it was too long ago; they are shown above; the chain is
-too long; who asks may not see it. Empty if they are known.
+"""Why the causes of an item are unknown: its process does not use aionode, has too old a version,
+does not answer, keeps no causes, or has sent nothing yet; it was too long ago; they are shown
+above; the chain is too long; the client may not see them. Empty if they are known.
 """
 
 
 class Cause(msgspec.Struct, frozen=True):
-    """A callback that has sent something, or what a task awaited before it did.
+    """A callback that sent something, or something that a task had awaited before it sent.
 
     Attributes:
         node: The full name of its node.
-        party: What took something, such as ``subscription``, ``timer`` or ``action server``.
-        name: The topic, service or action; of a timer its period.
-        callback: The name of the callback; empty if a task has awaited it.
-        waited_ns: How long it had waited until then, in nanoseconds.
-        ran_ns: How long the callback had run when it sent something.
-        source: What it took; None for the call of a timer that no callback has started.
+        party: What received the input, such as ``subscription``, ``timer`` or ``action server``.
+        name: The topic, service or action; for a timer, its period.
+        callback: The name of the callback; empty if a task awaited the input.
+        waited_ns: How long the input had waited until then, in nanoseconds.
+        ran_ns: How long the callback had run when it sent, in nanoseconds.
+        source: The input; None for a timer that was not started by a callback.
     """
 
     node: str
@@ -77,14 +77,14 @@ class Caused(msgspec.Struct, frozen=True):
     """Something that was sent, and what caused it.
 
     Attributes:
-        kind: ``message``, ``request``, ``response``, ``goal``, or ``timer`` for its start.
-        name: The topic, service or action; the period of a timer.
-        node: The full name of the node that has sent it; empty if unknown.
+        kind: ``message``, ``request``, ``response``, ``goal``, or ``timer`` for the start of one.
+        name: The topic, service or action; for a timer, its period.
+        node: The full name of the node that sent it; empty if unknown.
         gid: The gid of its publisher or client, in hexadecimal.
-        sequence: Its number.
-        ago_ns: How long ago it was sent, in nanoseconds; where that is unknown, how long ago it
-            was received; None if nobody has told.
-        causes: What caused it; none if it was not in a callback.
+        sequence: Its sequence number.
+        ago_ns: How long ago it was sent, in nanoseconds; if that is unknown, how long ago it was
+            received; None if neither is known.
+        causes: What caused it; empty if it was not sent by a callback.
         unknown: Why its causes are unknown; empty if they are known.
     """
 
@@ -99,15 +99,15 @@ class Caused(msgspec.Struct, frozen=True):
 
 
 class Why(msgspec.Struct):
-    """What led to the latest thing of a name.
+    """What led to the latest item with a name.
 
     Attributes:
-        name: The name that was asked for.
-        sent: What was sent last by it; for a node, of each topic, service and action.
+        name: The requested name.
+        sent: The item sent last; for a node, the last one of each topic, service and action.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
-        silent: Those that have not answered, in the same form.
-        older: Those whose aionode cannot keep causes.
-        unreadable: Those whose answer has another form than is known here.
+        silent: Contexts that did not answer, in the same form.
+        older: Contexts whose version of aionode cannot keep causes.
+        unreadable: Contexts whose answer this version cannot read.
     """
 
     name: str
@@ -119,17 +119,16 @@ class Why(msgspec.Struct):
 
 
 async def why(node: Node, name: str, *, timeout_sec: float = ANSWER_S) -> Why:
-    """Return what led to the latest message of a topic, or call, goal or thing that a node sent.
+    """Return what led to the latest message, call or goal with a name, or of a node.
 
-    All processes of aionode are asked for it, and then those that sent what caused it, process by
-    process. Each time is told by the clock of its process, and the ages are those of the moment in
-    which it answered: between hosts they are off by the time that the answer has taken. Cancelling
-    is safe.
+    All aionode processes are asked for it, and then those that sent its causes, process by process.
+    Times are by the clock of each process, and ages are as of its answer: between hosts they are
+    off by the time that the answer took. Cancelling is safe.
 
     Args:
         node: A running node.
         name: The name of a topic, service, action or node, or the id of a goal in hexadecimal.
-        timeout_sec: The longest wait for answers of a process, in seconds.
+        timeout_sec: Maximum time to wait for the answers of a process, in seconds.
     """
     inquiry = Inquiry(node, name, timeout_sec)
     await inquiry.ask(CauseQuestion(name), None)
@@ -173,7 +172,7 @@ def senders_in(node: Node) -> list[Sender]:
 
 
 def named_in(node: Node) -> dict[str, list[str]]:
-    """Return the nodes of each context that a node sees, but for hidden ones."""
+    """Return the nodes of each context that a node sees, except hidden ones."""
     named: dict[str, list[str]] = {}
     for info in node.graph.nodes():
         if not is_hidden(info.fully_qualified_name):
@@ -182,11 +181,11 @@ def named_in(node: Node) -> dict[str, list[str]]:
 
 
 class Findings:
-    """What processes have told, from which the tree of causes is made.
+    """The answers of processes, from which the tree of causes is built.
 
     Attributes:
-        found: The result, but for the tree.
-        sent: What was sent, with the report that tells of it, by key.
+        found: The result, without the tree.
+        sent: The sent items with their reports, by key.
         now_ns: The moment from which ages count back.
         senders: The endpoints of the graph, by gid.
         named: The nodes of each context.
@@ -203,7 +202,7 @@ class Findings:
         self._drawn: set[Key] = set()
 
     def note(self, report: CauseReport, offset_ns: int) -> None:
-        """Note who has told something, and how far its clock is off."""
+        """Record who answered, and the offset of its clock."""
         nodes = self.named.get(report.participant, [])
         if not report.is_kept and nodes:
             self.found.not_kept[report.participant] = nodes
@@ -211,7 +210,7 @@ class Findings:
         self.offsets[report.participant] = min(known, offset_ns)
 
     def roots(self) -> list[SentReport]:
-        """Return what was asked for: the latest of all; of a node, all that it has sent."""
+        """Return the requested items: the latest with the name; for a node, one of each name."""
         full = "/" + self.found.name.lstrip("/")
         entries = [
             entry
@@ -240,7 +239,7 @@ class Findings:
         return entry.at_ns + self.offsets[report.participant]
 
     def caused(self, entry: SentReport, above: tuple[Key, ...]) -> Caused:
-        """Return something that was sent, with its causes."""
+        """Return a sent item with its causes."""
         key = entry.kind, entry.gid, entry.sequence
         _, report = self.sent[key]
         is_known = key not in self._drawn and not (
@@ -276,7 +275,7 @@ class Findings:
         )
 
     def _source(self, run: RunReport, report: CauseReport, above: tuple[Key, ...]) -> Caused | None:
-        """Return what a run took; None for the call of a timer that no callback has started."""
+        """Return the input of a run; None for a timer that was not started by a callback."""
         known = self.sent.get((run.kind, run.gid, run.sequence))
         if known is not None:
             return self.caused(known[0], above)
@@ -297,7 +296,7 @@ class Findings:
         )
 
     def _reason(self, participant: str, kept: Unknown = "forgotten") -> Unknown:
-        """Return why a context told no causes of something; `kept` if it keeps them."""
+        """Return why a context reported no causes; `kept` if it keeps them."""
         reasons: tuple[tuple[Unknown, Iterable[str]], ...] = (
             ("not kept", self.found.not_kept),
             ("silent", self.found.silent),
@@ -307,7 +306,7 @@ class Findings:
         return next((reason for reason, those in reasons if participant in those), "no aionode")
 
     def leaves(self) -> list[Caused]:
-        """Return those who send something by the name, of whom nothing is told."""
+        """Return the endpoints that send with the name, when no item of theirs is known."""
         full = "/" + self.found.name.lstrip("/")
         kinds: dict[EndpointKind, Kind] = {
             EndpointKind.PUBLISHER: "message",
@@ -326,7 +325,7 @@ class Findings:
 
 
 class Inquiry(Findings):
-    """What the processes have told so far of what they are asked for."""
+    """The answers of the processes so far, and further questions to them."""
 
     def __init__(self, node: Node, name: str, timeout_sec: float) -> None:
         super().__init__(name, perf_ns())
@@ -337,7 +336,7 @@ class Inquiry(Findings):
         self.named = named_in(node)
 
     async def ask(self, question: CauseQuestion, participants: Collection[str] | None) -> None:
-        """Ask some contexts, or all; and keep what they tell."""
+        """Ask some contexts, or all of them, and keep their answers."""
         self._asked.update(question.keys)
         context = self._node.context
         if participants is None or context.participant in participants:
@@ -372,9 +371,9 @@ class Inquiry(Findings):
                 self.sent[entry.kind, entry.gid, entry.sequence] = entry, report
 
     def missing(self) -> dict[Key, list[str]]:
-        """Return what came before and was not asked for, with the contexts that may know.
+        """Return earlier items that were not asked for yet, with the contexts that may know them.
 
-        As much as one question may ask for; the next call returns more.
+        At most as many as fit into one question; the next call returns more.
         """
         found: dict[Key, list[str]] = {}
         for entry, _ in self.sent.values():
@@ -390,7 +389,7 @@ class Inquiry(Findings):
         return found
 
     def _owners(self, run: RunReport) -> list[str]:
-        """Return the contexts that may have sent what a run took."""
+        """Return the contexts that may have sent the input of a run."""
         if run.kind == "response":
             return sorted({each.participant for each in self._servers(run)})
         sender = self.senders.get(run.gid)

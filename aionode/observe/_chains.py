@@ -1,4 +1,4 @@
-"""What led to something, as lines of text."""
+"""The causes of an item as lines of text."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ REMEDY: Final = "start it with AIONODE_CAUSES=1, or with Context(causes=True)"
 
 
 def to_chains(why: Why) -> str:
-    """Return what led to something as text: one chain a line, and a branch where it has several.
+    """Return what led to an item as text: one chain per line, with a branch for several causes.
 
-    Below it are the processes of which nothing is known, with what to do about that.
+    Below it are the processes about which nothing is known, with a remedy.
     """
     lines = [line for sent in why.sent for line in chain(sent)]
     notes = {
@@ -51,7 +51,7 @@ def to_chains(why: Why) -> str:
 
 
 def chain(sent: Caused) -> list[str]:
-    """Return the lines of something that was sent."""
+    """Return the lines of a sent item."""
     first = what(sent)
     if len(sent.causes) == 1:
         rest = link(sent.causes[0])
@@ -66,7 +66,7 @@ def chain(sent: Caused) -> list[str]:
 
 
 def link(cause: Cause) -> list[str]:
-    """Return the lines of a cause, and what led to it."""
+    """Return the lines of a cause and of what led to it."""
     node = cause.node.lstrip("/") or "a hidden node"
     if not cause.callback:
         first = f"{node} (awaited, sent {took(cause.ran_ns)} later)"
@@ -82,7 +82,7 @@ def link(cause: Cause) -> list[str]:
 
 
 def what(sent: Caused) -> str:
-    """Return something that was sent, and when."""
+    """Return the description of a sent item, and when it was sent."""
     name = (
         f"start of {sent.name}"
         if sent.kind == "timer"
@@ -95,7 +95,7 @@ def what(sent: Caused) -> str:
 
 
 def took(duration_ns: int) -> str:
-    """Return a duration in words, as short as it is useful."""
+    """Return a duration with a suitable unit and precision."""
     for unit, size in (("s", 1e9), ("ms", 1e6)):
         if duration_ns >= size:
             value = duration_ns / size

@@ -1,4 +1,4 @@
-"""Pictures of the graph as text, for Graphviz and Mermaid, and as SVG."""
+"""Pictures of the graph as text, as SVG, and for Graphviz and Mermaid."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ VERBS: Final = {
 
 
 def rate_of(edge: Edge) -> str:
-    """Return how often something comes over an edge, in words; empty if unknown."""
+    """Return the rate of an edge as text; empty if unknown."""
     return "" if edge.hz is None else f"{edge.hz:.3g} Hz"
 
 
 def to_text(picture: Picture) -> str:
-    """Return a picture as lines: each node with what it does."""
+    """Return a picture as lines: each node with its endpoints."""
     types = {(vertex.kind, vertex.name): ", ".join(vertex.types) for vertex in picture.vertices}
     edges: dict[Key, list[Edge]] = defaultdict(list)
     for edge in picture.edges:
@@ -130,13 +130,13 @@ BETWEEN: Final = 90.0
 MARGIN: Final = 20.0
 
 SWEEPS: Final = 8
-"""How often the vertices of each layer are put in order by their neighbours."""
+"""How often the vertices of each layer are sorted by their neighbours."""
 
 Key: TypeAlias = tuple[str, str]
 
 
 def to_svg(picture: Picture) -> str:
-    """Return a picture as SVG: layers from left to right, by a layout of aionode's own."""
+    """Return a picture as SVG, with layers from left to right."""
     layers, chains = layered(picture)
     places = placed(layers)
     right = max((x + width for x, _, width in places.values()), default=0.0) + MARGIN
@@ -193,7 +193,7 @@ def edge_svg(
 
 
 def vertex_svg(vertex: Vertex, x: float, y: float, width: float) -> Iterator[str]:
-    """Yield a node as a rounded box, or what nodes share as a plain one."""
+    """Yield a node as a rounded box, or a topic, service or action as a plain one."""
     color = COLORS[vertex.change or vertex.kind]
     radius = HEIGHT / 2 if vertex.kind == "node" else 2
     title = escape(escaped(", ".join((vertex.kind, *vertex.types)), one_line=True))
@@ -209,7 +209,7 @@ def vertex_svg(vertex: Vertex, x: float, y: float, width: float) -> Iterator[str
 
 
 def layered(picture: Picture) -> tuple[list[list[Key]], list[list[Key]]]:
-    """Return the vertices in layers, with points for long edges, and the way of each edge."""
+    """Return the vertices in layers, with points for long edges, and the route of each edge."""
     keys: list[Key] = [(vertex.kind, vertex.name) for vertex in picture.vertices]
     layer = layers_of(keys, [(edge.source, edge.target) for edge in picture.edges])
     layers: list[list[Key]] = [[] for _ in range(max(layer.values(), default=-1) + 1)]
@@ -227,7 +227,7 @@ def layered(picture: Picture) -> tuple[list[list[Key]], list[list[Key]]]:
 
 
 def layers_of(keys: list[Key], edges: list[tuple[Key, Key]]) -> dict[Key, int]:
-    """Return the layer of each vertex: behind all that lead to it, unless they form a circle."""
+    """Return the layer of each vertex: after all that lead to it, unless they form a cycle."""
     after: dict[Key, list[Key]] = defaultdict(list)
     leads_to: dict[Key, int] = defaultdict(int)
     for source, target in edges:
@@ -237,7 +237,7 @@ def layers_of(keys: list[Key], edges: list[tuple[Key, Key]]) -> dict[Key, int]:
     left = dict.fromkeys(keys)
     while left:
         free = [key for key in left if leads_to[key] <= 0]
-        # In a circle, the one goes first that the fewest lead to.
+        # In a cycle, the vertex with the fewest edges to it goes first.
         taken = free or [min(left, key=lambda key: (leads_to[key], -len(after[key]), key))]
         for key in taken:
             del left[key]
@@ -249,7 +249,7 @@ def layers_of(keys: list[Key], edges: list[tuple[Key, Key]]) -> dict[Key, int]:
 
 
 def ordered(layers: list[list[Key]], chains: Iterable[list[Key]]) -> list[list[Key]]:
-    """Return the layers, each in the order of what its vertices are connected with."""
+    """Return the layers, each sorted by the positions of its vertices' neighbours."""
     near: dict[Key, set[Key]] = defaultdict(set)
     for chain in chains:
         for one, other in itertools.pairwise(chain):
@@ -273,7 +273,7 @@ def ordered(layers: list[list[Key]], chains: Iterable[list[Key]]) -> list[list[K
 
 
 def placed(layers: list[list[Key]]) -> dict[Key, tuple[float, float, float]]:
-    """Return left, top and width of each vertex: layers side by side, each in the middle."""
+    """Return left, top and width of each vertex: layers side by side, each centred."""
     tallest = max((len(layer) for layer in layers), default=0)
     places: dict[Key, tuple[float, float, float]] = {}
     x = MARGIN

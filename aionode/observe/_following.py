@@ -1,4 +1,4 @@
-"""Asks all processes again and again for what they have noted of causes since."""
+"""Asks all processes repeatedly for the causes recorded since the last time."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ if TYPE_CHECKING:
 __all__ = ["AFTER_ALL", "Following"]
 
 AFTER_ALL: Final = 2**60
-"""A number that no callback has yet."""
+"""A number higher than that of any callback."""
 
 MOST_ANSWERS: Final = 16
-"""How often one context is asked in a look: its logs, of 4096 each, are told a thousand at once."""
+"""Maximum number of questions to a context at a time: it returns up to 1000 of 4096 log entries."""
 
 MOST_CONTEXTS: Final = 10_000
-"""How many contexts are remembered: the commands of a day are a context each."""
+"""How many contexts are remembered: each command run during a day is one."""
 
 
 class Following:
-    """What the processes have told so far.
+    """The answers of the processes so far.
 
     Attributes:
         told: The latest answer of each context that keeps causes, without its runs and entries.
         offsets: From the clock of each context to this one, in nanoseconds.
-        lost: How many callbacks and things sent were no longer kept when they were asked for.
+        lost: How many callbacks and sent items were no longer kept when asked for.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
-        silent: Those that did not answer at the last look, in the same form.
-        older: Those whose aionode cannot keep causes.
-        unreadable: Those whose answer has another form than is known here.
+        silent: Contexts that did not answer the last time, in the same form.
+        older: Contexts whose version of aionode cannot keep causes.
+        unreadable: Contexts whose answer this version cannot read.
     """
 
     def __init__(self, node: Node) -> None:
@@ -58,15 +58,15 @@ class Following:
         self.unreadable: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
 
     def add(self, report: CauseReport) -> None:
-        """Take an answer with what is new."""
+        """Process an answer with new items."""
         raise NotImplementedError
 
     def nodes_of(self, participant: str) -> list[str]:
-        """Return the names of the nodes of a context, but for hidden ones."""
+        """Return the names of the nodes of a context, except hidden ones."""
         return named_in(self._node).get(participant, [])
 
     async def look(self, first: int) -> None:
-        """Ask for what is new; contexts seen for the first time are asked from `first` on."""
+        """Ask for new items; contexts seen for the first time are asked from number `first` on."""
         context = self._node.context
         self.silent = {}
         for _ in range(MOST_ANSWERS):
@@ -76,7 +76,7 @@ class Following:
             if not own.runs and not own.sent:
                 break
         for transport in context.transports:
-            # Contexts that are new are found by a question for nothing.
+            # An empty question finds new contexts.
             told = await transport.observe("causes", encoded(CauseQuestion()), ANSWER_S)
             for participant, data in told.items():
                 if data is None:
@@ -93,7 +93,7 @@ class Following:
                     await self._ask(transport, participant, first)
 
     async def _ask(self, transport: Any, participant: str, first: int) -> None:
-        """Ask one context for all that is new."""
+        """Ask one context for all new items."""
         for _ in range(MOST_ANSWERS):
             question = self._next(participant, first)
             told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})

@@ -1,4 +1,4 @@
-"""The graph as something to draw: nodes, what they share, and what does not match."""
+"""The graph for drawing: nodes, what they share, and mismatches."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Vertex(msgspec.Struct, frozen=True):
     Attributes:
         kind: What it is.
         name: Its full name.
-        types: The names of its types; none of a node.
-        change: Whether it is new or gone since another moment.
+        types: The names of its types; empty for a node.
+        change: Whether it is new or gone compared with an earlier picture.
     """
 
     kind: Kind
@@ -46,8 +46,8 @@ class Edge(msgspec.Struct, frozen=True):
         source: Where messages, requests or goals come from: kind and name.
         target: Where they go.
         mismatch: Why they do not arrive; empty if they do.
-        hz: How many there are in a second; None if that was not measured.
-        change: Whether it is new or gone since another moment.
+        hz: Their rate per second; None if it was not measured.
+        change: Whether it is new or gone compared with an earlier picture.
     """
 
     source: tuple[Kind, str]
@@ -58,7 +58,7 @@ class Edge(msgspec.Struct, frozen=True):
 
 
 class Picture(msgspec.Struct, frozen=True):
-    """A graph at one moment, which can be drawn, saved and compared.
+    """A graph at one time, which can be drawn, saved and compared.
 
     Attributes:
         vertices: Nodes, topics, services and actions, sorted.
@@ -83,7 +83,7 @@ def picture_of(
         names: Only these nodes, topics, services and actions, and their neighbours; a name that
             ends in a slash stands for all below it. By default all.
         everything: Whether infrastructure and hidden nodes are drawn as well.
-        hz: What was measured, by the node, the kind of endpoint and the name.
+        hz: Measured rates by node, kind of endpoint and name.
     """
     edges: dict[tuple[object, object], Edge] = {}
     types: dict[tuple[Kind, str], set[str]] = {}
@@ -138,7 +138,7 @@ def mismatch_of(graph: Graph, endpoint: EndpointInfo) -> str:
 def chosen_of(
     vertices: set[tuple[Kind, str]], edges: Collection[Edge], names: Collection[str]
 ) -> set[tuple[Kind, str]]:
-    """Return those vertices that are named, and those that they are connected with."""
+    """Return the named vertices and those connected with them."""
     if not names:
         return vertices
     wanted = {f"/{name.lstrip('/')}" for name in names}
@@ -154,7 +154,7 @@ def chosen_of(
 
 
 def difference(before: Picture, after: Picture) -> Picture:
-    """Return both pictures as one, in which what is new and what is gone is marked."""
+    """Return both pictures as one, in which new and vanished parts are marked."""
     old = {(vertex.kind, vertex.name): vertex for vertex in before.vertices}
     new = {(vertex.kind, vertex.name): vertex for vertex in after.vertices}
     old_edges = {(edge.source, edge.target): edge for edge in before.edges}

@@ -1,4 +1,4 @@
-"""What happened between two looks at a system."""
+"""What happened between two snapshots of a system."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["EntityRate", "ProcessRate", "Rates", "rates"]
 
 RATED: Final = ("published", "received", "calls")
-"""The counts that tell how often an entity works, the first that it has."""
+"""The counts from which an entity's rate is computed: the first one that it has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +25,10 @@ class EntityRate:
 
     Attributes:
         node: The full name of its node.
-        report: Its counts, at the second snapshot.
-        hz: How often it published, received or called, in a second.
+        report: Its counts at the second snapshot.
+        hz: How often it published, received or called per second.
         new: How much each count has grown.
-        durations: The durations meanwhile, by name.
+        durations: The durations between the snapshots, by name.
     """
 
     node: str
@@ -43,8 +43,8 @@ class ProcessRate:
     """What one process did between two snapshots.
 
     Attributes:
-        report: Its report, at the second snapshot.
-        cpu: The share of one processor that it took.
+        report: Its report at the second snapshot.
+        cpu: The share of one processor that it used.
         entities: What its endpoints, timers and actions did.
     """
 
@@ -58,8 +58,8 @@ class Rates:
     """What a system did between two snapshots.
 
     Attributes:
-        processes: What each process did that is in both.
-        snapshot: The second one.
+        processes: What each process did that is in both snapshots.
+        snapshot: The second snapshot.
     """
 
     processes: list[ProcessRate]
@@ -71,7 +71,7 @@ class Rates:
             yield from process.entities
 
     def topic_hz(self) -> dict[str, float]:
-        """Return how often each topic was published to, in a second, by all its publishers."""
+        """Return the rate of each topic per second, over all its publishers."""
         found: dict[str, float] = {}
         for entity in self.entities():
             if entity.report.kind == "publisher":
@@ -111,7 +111,7 @@ Key = tuple[str, str, str, str, int]
 
 
 def entities_of(process: ProcessReport) -> Iterator[tuple[Key, str, EntityReport]]:
-    """Yield the entities of a process with keys: two of one kind and name come in their order."""
+    """Yield the entities of a process with keys; those of the same kind and name are numbered."""
     seen: dict[tuple[str, str, str, str], int] = {}
     for node in process.nodes:
         for entity in node.entities:
@@ -123,7 +123,7 @@ def entities_of(process: ProcessReport) -> Iterator[tuple[Key, str, EntityReport
 def entity_rate(
     node: str, before: EntityReport | None, after: EntityReport, seconds: float
 ) -> EntityRate:
-    """Return what one entity did; all of it, if it was not there before."""
+    """Return what one entity did; everything, if it is new."""
     old = {} if before is None else before.counts
     new = {name: count - old.get(name, 0) for name, count in after.counts.items()}
     counted = next((new[name] for name in RATED if name in new), 0)

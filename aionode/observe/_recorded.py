@@ -1,4 +1,4 @@
-"""Causes in a recording: what processes tell second by second, and the answer from it."""
+"""Causes in a recording: the reports of processes, and answers from them."""
 
 from __future__ import annotations
 
@@ -26,31 +26,31 @@ if TYPE_CHECKING:
 __all__ = ["CauseRecorder", "RecordedCauses"]
 
 MOST_READ: Final = 100_000
-"""How many things that were sent are kept while a recording is read, the latest."""
+"""How many of the latest sent items are kept while a recording is read."""
 
 MOST_ENDPOINTS: Final = 20_000
 """How many endpoints, and how many contexts, are kept while a recording is read."""
 
 MOST_BYTES: Final = 128 << 20
-"""The most bytes of each kind of them, as JSON: a recording may have been written by anybody."""
+"""Maximum bytes of each kind of them, as JSON, since anyone may have written a recording."""
 
 K = TypeVar("K")
 V = TypeVar("V")
 
 
 class CauseRecord(msgspec.Struct):
-    """What one context has told; or, without a report, the graph at the end of a look.
+    """The answer of one context or, without a report, the graph after all were asked.
 
     Attributes:
-        now_ns: When it was told, by the steady clock of the recorder.
-        time_ns: The same by the clock of the recorder's node, as in the recording.
+        now_ns: The time of the answer, by the steady clock of the recorder.
+        time_ns: The same, by the clock of the recorder's node, as in the recording.
         report: The answer of a context, without its runs.
         offset_ns: From the clock of that context to the recorder's.
         named: The nodes of each context.
         senders: The endpoints of the graph.
-        silent: The contexts that have not answered.
-        older: Those whose aionode cannot keep causes.
-        unreadable: Those whose answer could not be read.
+        silent: The contexts that did not answer.
+        older: Contexts whose version of aionode cannot keep causes.
+        unreadable: Contexts whose answer could not be read.
     """
 
     now_ns: int
@@ -99,10 +99,10 @@ class RecentParts(Recent[K, V]):
 
 
 class CauseRecorder(Following):
-    """Asks the processes again and again for the causes that they have kept since.
+    """Asks the processes repeatedly for the causes kept since the last time.
 
     Args:
-        node: A running node. It is not named among those that keep no causes.
+        node: A running node. It is not listed among those that keep no causes.
     """
 
     def __init__(self, node: Node) -> None:
@@ -110,7 +110,7 @@ class CauseRecorder(Following):
         self._texts: list[str] = []
 
     def add(self, report: CauseReport) -> None:
-        """Take an answer; one that could not be read from a recording counts as unreadable."""
+        """Process an answer; one that could not be read from a recording counts as unreadable."""
         participant = report.participant
         told = msgspec.structs.replace(report, runs=[], sent=report.sent[:MOST_AT_ONCE])
         text = encoded(CauseRecord(*self._now(), told, self.offsets[participant]))
@@ -122,7 +122,7 @@ class CauseRecorder(Following):
     async def texts(self) -> list[str]:
         """Ask all processes once; return what to record, as texts for `RecordedCauses`.
 
-        The first texts have all that is still kept, the later ones what is new. Cancelling is safe.
+        The first texts contain all that is still kept, later ones what is new. Cancelling is safe.
         """
         await self.look(0)
         named = named_in(self._node)
@@ -146,10 +146,10 @@ class CauseRecorder(Following):
 
 
 class RecordedCauses:
-    """The causes in a recording, read in order of time.
+    """The causes in a recording, which is read in order of time.
 
-    Of many, the latest 100,000 things that were sent are kept, and the last one of each sender; of
-    each, at most 128 MiB of JSON.
+    The latest 100,000 sent items are kept, and the last one of each sender, at most 128 MiB of JSON
+    each.
     """
 
     def __init__(self) -> None:
@@ -164,7 +164,7 @@ class RecordedCauses:
         self._moment = 0, 0  # when the last one was told, by both clocks
 
     def add(self, text: str) -> bool:
-        """Read a text; return whether it is one of a `CauseRecorder` of this version."""
+        """Read a text; return whether a `CauseRecorder` of this version wrote it."""
         record = decoded(text)
         if record is None:
             return False
@@ -187,11 +187,11 @@ class RecordedCauses:
         return True
 
     def why(self, name: str, at_ns: int | None = None) -> Why:
-        """Return what `observe.why` had answered at a time.
+        """Return what `observe.why` would have answered at a time.
 
         Args:
             name: The name of a topic, service, action or node, or the id of a goal in hexadecimal.
-            at_ns: When, by the clock of the recording; by default when the last text was told.
+            at_ns: The time, by the clock of the recording; by default that of the last text.
         """
         now_ns, time_ns = self._moment
         findings = Findings(name, now_ns if at_ns is None else now_ns - (time_ns - at_ns))
@@ -216,12 +216,12 @@ class RecordedCauses:
 
 
 def encoded(record: CauseRecord) -> str:
-    """Return a record as a text."""
+    """Return a record as text."""
     return msgspec.json.encode(record).decode()
 
 
 def decoded(text: str) -> CauseRecord | None:
-    """Return a text as a record; None if it is none that is known here."""
+    """Return the record in a text; None if this version cannot read it."""
     if len(text) > LARGEST_REPORT:
         return None
     try:

@@ -1,4 +1,4 @@
-"""One look at all processes of a system."""
+"""A snapshot of all processes of a system."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
 __all__ = ["Snapshot", "observe"]
 
 ANSWER_S: Final = 0.5
-"""Time in which a process answers that can answer at all, in seconds; most take milliseconds."""
+"""Time within which any responsive process answers, in seconds; most take milliseconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """What the processes of a system have counted so far.
+    """The counts of the processes of a system so far.
 
     Attributes:
-        processes: The reports of all contexts that have answered, this one's first.
-        silent: Those that have not: frozen, blocked, or dead and not missed yet; each with the
-            names of its nodes, as far as the graph knows them.
-        older: Those whose aionode keeps no reports, in the same form.
-        unreached: In words, processes that take no connection, so that their nodes are unknown.
-        foreign: Nodes of others, such as those of ROS 2, which keep none either.
-        unreadable: Those whose report has another form than is known here.
+        processes: The reports of all contexts that answered, this one's first.
+        silent: Contexts that did not: frozen, blocked, or dead without having been noticed; each
+            with the names of its nodes, as far as the graph knows them.
+        older: Contexts whose version of aionode makes no reports, in the same form.
+        unreached: Descriptions of processes that accept no connection, whose nodes are unknown.
+        foreign: Nodes that do not use aionode, such as those of ROS 2, which make none either.
+        unreadable: Contexts whose report this version cannot read.
     """
 
     processes: list[ProcessReport]
@@ -40,14 +40,14 @@ class Snapshot:
 
 
 async def observe(node: Node, *, timeout_sec: float = ANSWER_S) -> Snapshot:
-    """Ask all processes of aionode in the domain what they have counted.
+    """Ask all aionode processes in the domain for their counts.
 
-    All are asked at once, and one that does not answer delays the others by `timeout_sec` at most.
+    All are asked at once, and one that does not answer delays the result by at most `timeout_sec`.
     Hidden nodes, such as those of tools, are left out of reports. Cancelling is safe.
 
     Args:
         node: A running node.
-        timeout_sec: The longest wait for answers.
+        timeout_sec: Maximum time to wait for answers, in seconds.
     """
     context = node.context
     named: dict[str, list[str]] = {}

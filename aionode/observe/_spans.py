@@ -25,15 +25,18 @@ SPAN_BYTES: Final = 8
 
 
 def export_spans(node: Node, provider: TracerProvider | None = None) -> Callable[[], None]:
-    """Export what the context of a node sends, and its callbacks, as spans; return what ends that.
+    """Export what a node's context sends, and its callbacks, as spans.
 
-    A trace is one message with the callbacks that take it, in all processes: its ids follow from
-    the publisher's gid and the sequence number, which each of them knows. A span of what was sent
-    has links to the callbacks that caused it, in the traces before.
+    A trace consists of one message and the callbacks that receive it, in all processes: its id
+    follows from the publisher's gid and the sequence number, which each of them knows. The span of
+    a message has links to the callbacks that caused it, in earlier traces.
 
     Args:
         node: A node of a context that keeps causes.
-        provider: Makes the spans; by default the one that the program has set.
+        provider: Makes the spans; by default the one set by the program.
+
+    Returns:
+        A function that ends the export.
 
     Raises:
         ConfigurationError: the context keeps no causes (a ValueError), or the program has set no
@@ -61,7 +64,7 @@ def export_spans(node: Node, provider: TracerProvider | None = None) -> Callable
 
 
 class Ids(threading.local):
-    """Gives the spans of a tracer the ids that are set before each is started."""
+    """Provides the ids for a tracer's next span."""
 
     trace_id = 0
     span_id = 0
@@ -75,18 +78,18 @@ class Ids(threading.local):
         return self.span_id
 
     def is_trace_id_random(self) -> bool:
-        """Return whether ids are drawn; they are hashes."""
+        """Return whether ids are random; they are hashes."""
         return False
 
 
 def ids_of(*parts: object) -> tuple[int, int]:
-    """Return the ids of the trace and the span that follow from something."""
+    """Return the ids of a trace and a span, derived from parts."""
     digest = blake2b(repr(parts).encode(), digest_size=TRACE_BYTES + SPAN_BYTES).digest()
     return int.from_bytes(digest[:TRACE_BYTES]), int.from_bytes(digest[TRACE_BYTES:])
 
 
 def ids_of_run(run: Run) -> tuple[int, int]:
-    """Return the ids of a run; its trace is that of what it took."""
+    """Return the ids of a run; its trace is that of its input."""
     own = ids_of("run", run.party.node, run.party.name, run.gid, run.sequence, run.began_ns)
     if run.kind == "timer" and not run.sequence:
         return own
@@ -94,7 +97,7 @@ def ids_of_run(run: Run) -> tuple[int, int]:
 
 
 class Spans:
-    """Makes a span of each thing sent and of each callback that has ended."""
+    """Makes a span for each sent item and each callback that has ended."""
 
     def __init__(self, tracer: Any) -> None:
         self._tracer = tracer
@@ -102,7 +105,7 @@ class Spans:
         self._system_ns = MachineTime().system_ns
 
     def note_sent(self, sent: Sent) -> None:
-        """Export something that was sent."""
+        """Export a sent item."""
         from opentelemetry.trace import Link, SpanKind
 
         self._export(

@@ -1,4 +1,4 @@
-"""The callbacks of all processes on one axis of time, for Perfetto and Chrome."""
+"""The callbacks of all processes on a common time axis, for Perfetto and Chrome."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ if TYPE_CHECKING:
 __all__ = ["Trace", "record_trace"]
 
 LOOK_S: Final = 0.2
-"""How often the processes are asked, in seconds; each keeps some thousand callbacks in between."""
+"""The interval at which processes are asked, in seconds; each keeps 4096 callbacks meanwhile."""
 
 MOST_EVENTS: Final = 1_000_000
-"""How many callbacks and things sent a trace has at most."""
+"""Maximum number of callbacks and sent items in a trace."""
 
 MOST_BYTES: Final = 256 << 20
-"""The most bytes of answers that a trace is made of; a callback takes some 150."""
+"""Maximum bytes of the answers in a trace; a callback takes about 150."""
 
 MOST_NAME: Final = 300
-"""The most characters of a name that is repeated for each arrow."""
+"""Maximum characters of a name that is repeated for each arrow."""
 
 
 class Trace(msgspec.Struct):
-    """What processes did for a while.
+    """What the processes did during a period.
 
     Attributes:
-        events: The events of the trace event format of Chrome, which Perfetto reads.
-        callbacks: How many callbacks are in it.
-        lost: How many callbacks and things sent are not in it: they were no longer kept when they
-            were asked for, or it was full.
+        events: The events in Chrome's trace event format, which Perfetto reads.
+        callbacks: The number of callbacks in it.
+        lost: How many callbacks and sent items are missing: they were no longer kept when asked
+            for, or the trace was full.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
-        silent: Those that did not answer at the end, in the same form.
-        older: Those whose aionode cannot keep causes, or tells them in another form.
+        silent: Contexts that did not answer at the end, in the same form.
+        older: Contexts whose version of aionode cannot keep causes, or reports them differently.
     """
 
     events: list[dict[str, Any]]
@@ -61,11 +61,11 @@ class Trace(msgspec.Struct):
 async def record_trace(node: Node, duration_sec: float) -> Trace:
     """Record the callbacks of all processes that keep causes, and what they send each other.
 
-    Callbacks that have not ended by then are left out. Cancelling is safe.
+    Callbacks that are still running at the end are left out. Cancelling is safe.
 
     Args:
         node: A running node.
-        duration_sec: For how long, in seconds.
+        duration_sec: The length of the trace, in seconds.
     """
     recording = Recording(node)
     await recording.look(AFTER_ALL)
@@ -77,7 +77,7 @@ async def record_trace(node: Node, duration_sec: float) -> Trace:
 
 
 class Recording(Following):
-    """What the processes have told so far."""
+    """The answers of the processes so far, up to a limit."""
 
     def __init__(self, node: Node) -> None:
         super().__init__(node)
@@ -86,7 +86,7 @@ class Recording(Following):
         self._bytes = 0
 
     def add(self, report: CauseReport) -> None:
-        """Keep what is new, up to a number and a size."""
+        """Keep new items, up to a number and a size."""
         participant = report.participant
         room = MOST_EVENTS - len(self._runs) - len(self._sent)
         self._bytes += len(encoded(report))
@@ -99,7 +99,7 @@ class Recording(Following):
         ]
 
     def trace(self) -> Trace:
-        """Return the trace, whose time begins with the first thing in it."""
+        """Return the trace, whose time begins at its first event."""
         runs = [each for each in self._runs if each[0] in self.told]
         sent = [each for each in self._sent if each[0] in self.told]
         forgotten = len(self._runs) + len(self._sent) - len(runs) - len(sent)
@@ -127,14 +127,14 @@ class Recording(Following):
 
 
 class Lanes:
-    """The tracks of an entity: a callback that overlaps others has one of its own."""
+    """The tracks of an entity: callbacks that overlap are on different ones."""
 
     def __init__(self) -> None:
         self._busy: list[tuple[int, int]] = []  # when each ends, and its track; a heap
         self._free: list[int] = []  # a heap as well
 
     def take(self, began_ns: int, ended_ns: int) -> int:
-        """Return the first track that is free at the start of a callback, which takes it."""
+        """Return the first track that is free when a callback starts, and occupy it."""
         while self._busy and self._busy[0][0] <= began_ns:
             heapq.heappush(self._free, heapq.heappop(self._busy)[1])
         lane = heapq.heappop(self._free) if self._free else len(self._busy)
@@ -143,13 +143,13 @@ class Lanes:
 
 
 class Drawing:
-    """Makes events of what was told.
+    """Makes events from reports.
 
-    Callbacks of one entity are on a track of their own; those that overlap, on several.
+    Each entity has a track for its callbacks, and further ones for those that overlap.
 
     Args:
-        events: Where they go.
-        zeros: When the trace begins, by the clock of each context.
+        events: Receives the events.
+        zeros: The start of the trace, by the clock of each context.
     """
 
     def __init__(self, events: list[dict[str, Any]], zeros: dict[str, int]) -> None:
@@ -195,7 +195,7 @@ class Drawing:
             )
 
     def add_sent(self, entries: Iterable[tuple[str, SentReport]]) -> None:
-        """Draw what was sent, with an arrow to each callback that took it."""
+        """Draw sent items, with an arrow to each callback that received them."""
         for number, (participant, sent) in enumerate(entries, 1):
             calls = [run for run in sent.causes if run.callback]
             places = (self._places.get(place_of(participant, run)) for run in calls)
@@ -248,5 +248,5 @@ class Drawing:
 
 
 def place_of(participant: str, run: RunReport) -> tuple[str, str, bytes, int, int]:
-    """Return what identifies a run in all that was told."""
+    """Return what identifies a run among all reports."""
     return participant, f"{run.node} {run.name}", run.gid, run.sequence, run.began_ns
