@@ -343,6 +343,29 @@ def drawn(message: Image) -> str:
     return f"import('./page/picture.js').then((it) => Array.from(it.picture({fields}).data))"
 
 
+async def test_a_picture_larger_than_its_data_is_an_error(context: Context) -> None:
+    """A message of a few bytes could have the browser take gigabytes."""
+    async with scene(context) as (page, *_):
+        for size in ("width: 30000, height: 30000, step: 30000", "width: 9, height: 1, step: 4"):
+            assert "too few for" in await page.value(
+                f"import('./page/picture.js').then((it) => it.picture({{ {size}, encoding: 'mono8',"
+                " is_bigendian: 0, data: new Uint8Array(4) })).catch((error) => error.message)"
+            )
+
+
+async def test_numbers_that_hardly_differ_can_be_plotted(context: Context) -> None:
+    """Of nanoseconds since 1970, lines of the grid may be closer than two numbers can be."""
+    async with scene(context) as (page, *_):
+        assert await page.value(
+            "import('./page/plot.js').then(({ Plot }) => {"
+            " const plot = new Plot(document.querySelector('#plot canvas'));"
+            " plot.add('stamp');"
+            " for (const value of [1e17, 1e17 + 16]) plot.push('stamp', value);"
+            " plot.draw(performance.now() / 1000);"
+            " return true; })"
+        )
+
+
 async def test_pictures_have_their_colours(context: Context) -> None:
     """Raw, without a number in it, and compressed."""
     red = np.full((60, 80, 3), (200, 30, 0), np.uint8)

@@ -28,7 +28,8 @@ function camera(robot, topics, root) {
       canvas.height = shown.height;
       if (shown instanceof ImageData) canvas.getContext("2d").putImageData(shown, 0, 0);
       else canvas.getContext("2d").drawImage(shown, 0, 0);
-      caption.textContent = `${shown.width} × ${shown.height}, ${message.encoding ?? message.format}`;
+      shown.close?.(); // rather than when it is collected: ten of them a second fill the memory
+      caption.textContent = `${canvas.width} × ${canvas.height}, ${message.encoding ?? message.format}`;
     } catch (error) {
       caption.textContent = error.message;
     }

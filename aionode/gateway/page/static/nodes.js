@@ -4,6 +4,7 @@ import { element, fill, notice } from "./dom.js";
 
 const LEVELS = { 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL" };
 const MOST_LINES = 500;
+const MOST_LETTERS = 5000; // of a line
 const LIST_MS = 5000;
 const AT_ONCE = 8; // parameters requested at a time
 
@@ -25,7 +26,7 @@ export function log(robot) {
     const row = element("tr", { className: `level-${message.level}` },
       element("td", { textContent: time.toLocaleTimeString() }),
       element("td", { textContent: LEVELS[message.level] ?? message.level }),
-      element("td", { textContent: `${message.name}: ${message.msg}` }));
+      element("td", { textContent: `${message.name}: ${message.msg}`.slice(0, MOST_LETTERS) }));
     row.dataset.level = message.level;
     row.hidden = isHidden(row);
     rows.append(row);
@@ -79,7 +80,7 @@ export function parameters(robot) {
         notice(`${name}: ${hint}`);
       }
     };
-    return element("tr", {}, element("td", { textContent: name.split(":")[1] }), element("td", {}, input));
+    return element("tr", {}, element("td", { textContent: name.slice(name.indexOf(":") + 1) }), element("td", {}, input));
   }
 
   select.onchange = show;

@@ -15,7 +15,9 @@ const YUV = { yuv422: [1, 0], uyvy: [1, 0], yuv422_yuy2: [0, 1], yuyv: [0, 1] };
 const BAYER = /^bayer_([rgb]{4})(8|16)$/;
 
 export function picture(message) {
-  const { width, height } = message;
+  const { width, height, step, data } = message;
+  // A pixel takes a byte or more, so a picture takes no more memory here than the message allows.
+  if (step < width || data.length < height * step) throw new Error(`${data.length} bytes are too few for ${width} × ${height} pixels`);
   const shown = new ImageData(width, height);
   const pixels = shown.data;
   const paint = painter(message, pixels);

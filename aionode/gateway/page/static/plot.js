@@ -2,6 +2,7 @@
 
 const COLOURS = ["#3b8eea", "#e8862e", "#2ea36b", "#d9485f", "#9a6be0", "#b0932b"];
 const MOST_POINTS = 6000;
+const MOST_GRID_LINES = 8; // of large numbers, a step may be too small to make a difference
 const MARGIN = { left: 52, right: 8, top: 8, bottom: 20 };
 
 /** Lines of numbers, the newest at the right edge. */
@@ -89,7 +90,8 @@ export class Plot {
     context.lineWidth = 1;
     const step = niceStep((high - low) / 5);
     context.textAlign = "right";
-    for (let value = Math.ceil(low / step) * step; value <= high; value += step) {
+    let value = Math.ceil(low / step) * step;
+    for (let count = 0; count < MOST_GRID_LINES && value <= high; count++, value += step) {
       line(context, x(now - this.seconds), y(value), x(now), y(value));
       context.fillText(Number(value.toPrecision(6)).toString(), MARGIN.left - 6, y(value) + 4);
     }

@@ -54,6 +54,8 @@ export class Scene extends EventTarget {
       layer.box.remove();
       layer.end?.();
       this.layers.delete(topic);
+      this.listen(); // nobody needs transforms after the last one
+      this.note();
     }
     for (const [topic, type] of types) {
       if (this.layers.has(topic) || !readerOf(type)) continue;

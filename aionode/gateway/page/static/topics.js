@@ -113,6 +113,7 @@ export class MessageView {
   choose(topic) {
     this.end?.();
     this.topic = topic;
+    this.newest = null;
     this.name.textContent = topic;
     this.rows.replaceChildren();
     this.cells = new Map();
@@ -123,7 +124,7 @@ export class MessageView {
     if (message === null || this.newest) { this.newest = message ?? this.newest; return; }
     this.newest = message;
     requestAnimationFrame(() => {
-      this.show(this.newest);
+      if (this.newest) this.show(this.newest); // otherwise another topic was chosen meanwhile
       this.newest = null;
     });
   }

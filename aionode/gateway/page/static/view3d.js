@@ -48,15 +48,16 @@ export function view3d(robot, topics, scene, transforms) {
     const problems = [];
     caption.textContent = "";
     try {
-      model = { urdf, ...modelOf(urdf, (uri) => robot.asset(uri)) };
+      show({ urdf, ...modelOf(urdf, (uri) => robot.asset(uri)) });
     } catch (error) {
-      model = null;
+      show(null);
       caption.textContent = error.message;
       return;
     }
     const taken = model;
     for (const part of model.parts) {
       part.triangles().then((triangles) => {
+        if (model !== taken) return;
         part.drawn = gl.solid(triangles);
         isNew = true;
       }).catch((error) => {
@@ -64,6 +65,12 @@ export function view3d(robot, topics, scene, transforms) {
         if (model === taken) caption.textContent = problems.join("; ").slice(0, 500);
       });
     }
+  }
+
+  function show(other) {
+    for (const { drawn } of model?.parts ?? []) if (drawn) gl.drop(drawn);
+    model = other;
+    isNew = true;
   }
 
   function draw() {
@@ -203,6 +210,7 @@ function painter(canvas) {
     draw,
     drawOnce: (corners, mode, colour, model) => draw(load(corners, null, scratch), mode, colour, model),
     solid: (triangles) => load(triangles, normalsOf(triangles)),
+    drop: ({ buffer }) => gl.deleteBuffer(buffer),
     floor: load(floorLines()),
     axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis, index) => ({
       drawn: load(new Float32Array([0, 0, 0, ...axis.map((each) => each * AXES_M)])),
