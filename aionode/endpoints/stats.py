@@ -90,9 +90,12 @@ class Distribution:
         while begin < end:
             shifted = ordered[begin] + _OFFSET
             octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
-            bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
-            following = bisect_left(ordered, _start_ns(bucket + 1), begin)
-            counts[bucket] = following - begin
+            step = shifted >> octave
+            ends_ns = ((step + 1) << octave) - _OFFSET
+            following = begin + 1
+            if following < end and ordered[following] < ends_ns:
+                following = bisect_left(ordered, ends_ns, following)
+            counts[(octave << _SUB_BUCKETS_LOG2) + step] = following - begin
             begin = following
         for distribution in (self, *others):
             distribution._merge(counts, ordered[-1])

@@ -233,6 +233,20 @@ async def bare_socket(count: Count) -> AsyncIterator[Callable[[], Any]]:
 
 
 @asynccontextmanager
+async def bare_queue(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Put an object into a queue that a task reads."""
+    queue: asyncio.Queue[int] = asyncio.Queue(SMALL)
+
+    async def read() -> None:
+        while True:
+            count.take(await queue.get())
+
+    reading = asyncio.ensure_future(read())
+    yield lambda: queue.put_nowait(1)
+    reading.cancel()
+
+
+@asynccontextmanager
 async def in_process(count: Count, *, causes: bool = False) -> AsyncIterator[Callable[[], Any]]:
     """Publish to a callback of the same process."""
     async with (
@@ -390,6 +404,7 @@ async def timer_tick(count: Count) -> AsyncIterator[Callable[[], Any]]:
 CASES: Final[dict[str, Case]] = {
     "nothing": nothing,
     "bare socket": bare_socket,
+    "bare asyncio.Queue": bare_queue,
     "publish to callback, in process": in_process,
     "publish, link": link_publish,
     "receive to callback, link": link_receive,

@@ -16,27 +16,28 @@ class InlineCall:
     """Runs callbacks within an event of the loop while the task that would run them waits.
 
     Anything left over, an exception or something to await, goes to that task through `after`.
+
+    Attributes:
+        context: That of the task, to call `run` in; set by `prepare`.
     """
 
-    __slots__ = ("_context", "_error", "_rest")
+    __slots__ = ("_error", "_rest", "context")
 
     def __init__(self) -> None:
-        self._context: Context | None = None
+        self.context: Context
         self._error: BaseException | None = None
         self._rest: Coroutine[object, object, None] | None = None
 
     def prepare(self) -> None:
-        """Make callbacks run in the context of the current task, as if it called them."""
-        if self._context is None:
-            self._context = copy_context()
+        """Take the context of the current task, for callbacks to run as if it called them."""
+        self.context = copy_context()
 
     def run(
         self, handle: Callable[..., Coroutine[object, object, None] | None], *args: Any
     ) -> bool:
-        """Call `handle`; return False if it left something for `after`. Needs `prepare` first."""
-        assert self._context is not None  # noqa: S101  # `prepare` was called
+        """Call `handle`, within `context`; return False if it left something for `after`."""
         try:
-            self._rest = self._context.run(handle, *args)
+            self._rest = handle(*args)
         except (KeyboardInterrupt, SystemExit):
             raise
         except BaseException as error:  # noqa: BLE001  # raised by the task, as if it had called

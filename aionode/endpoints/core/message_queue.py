@@ -33,11 +33,11 @@ class MessageQueue(InlineCall, Generic[T]):
     when it reaches its depth or its limit of bytes; a single item always fits.
 
     Items may also bypass it: while `consume` waits, `take_inline` handles an item within the event
-    that brought it. Waking the consumer instead takes another iteration of the loop and a step of a
-    task, which is much of the cost of a message. Order is preserved: once an item is queued or the
-    consumer has been woken, nothing bypasses the queue, and the consumer finishes what an inline
-    callback left over before it takes the next item. This is part of the queue rather than a
-    separate object because every subscription has a queue.
+    that brought it, and what is queued is handled by a call of the loop (`take_turn`). Waking the
+    consumer instead takes a step of a task, which is much of the cost of a message. Order is
+    preserved: once an item is queued or the consumer has been woken, nothing bypasses the queue,
+    and the consumer finishes what an inline callback left over before it takes the next item. This
+    is part of the queue rather than a separate object because every subscription has a queue.
 
     Attributes:
         depth: Maximum number of items.
@@ -54,6 +54,7 @@ class MessageQueue(InlineCall, Generic[T]):
 
     __slots__ = (
         "_bytes",
+        "_call_soon",
         "_handle",
         "_inline_waiter",
         "_on_heavy",
@@ -97,9 +98,11 @@ class MessageQueue(InlineCall, Generic[T]):
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
         # `consume` waits for this waiter while inline calls handle items. It is None while the
-        # consumer is not waiting, and during an inline callback.
+        # consumer is not waiting, while a turn is planned, and during an inline callback.
         self._inline_waiter: asyncio.Future[None] | None = None
-        self._handle: Callable[[int, T], Coroutine[object, object, None] | None] | None = None
+        # Set by `consume`: what handles items inline, and `call_soon` of the loop.
+        self._handle: Callable[[int, T], Coroutine[object, object, None] | None]
+        self._call_soon: Callable[..., asyncio.Handle]
 
     def __len__(self) -> int:
         return len(self.items)
@@ -143,6 +146,8 @@ class MessageQueue(InlineCall, Generic[T]):
         queue.append((perf_ns(), item))
         if self._readers:
             self.wake_readers()
+        elif self._inline_waiter is not None:
+            self._plan_turn(self._inline_waiter)
         return True
 
     def make_room(self, item: T) -> bool:
@@ -266,7 +271,7 @@ class MessageQueue(InlineCall, Generic[T]):
 
         Args:
             handle: Runs what can run at once, and returns the rest to await, if any.
-            inline: Whether `take_inline` may call it.
+            inline: Whether it may be called outside the consumer's task while that waits.
 
         Raises:
             BaseException: what `handle` raised.
@@ -274,29 +279,33 @@ class MessageQueue(InlineCall, Generic[T]):
         if inline:
             self.prepare()
             self._handle = handle
+            self._call_soon = asyncio.get_running_loop().call_soon
         while True:
             if not self.items:
                 rest = await self._wait_for_rest(inline=inline)
                 if rest is not None:
                     await rest
-            turn_ends_ns = perf_ns() + self.slice_ns
+            now_ns = perf_ns()
+            turn_ends_ns = now_ns + self.slice_ns
             while self.items:
-                rest = self.handle_items(handle, turn_ends_ns)
+                rest = self.handle_items(handle, now_ns, turn_ends_ns)
                 if rest is not None:
                     await rest
-                if self.items and perf_ns() >= turn_ends_ns:
+                if self.items and (now_ns := perf_ns()) >= turn_ends_ns:
                     await checkpoint()
-                    turn_ends_ns = perf_ns() + self.slice_ns
+                    now_ns = perf_ns()
+                    turn_ends_ns = now_ns + self.slice_ns
 
     def handle_items(
         self,
         handle: Callable[[int, T], Coroutine[object, object, None] | None],
+        now_ns: int,  # noqa: ARG002  # for subclasses
         turn_ends_ns: int,  # noqa: ARG002  # for subclasses
     ) -> Coroutine[object, object, None] | None:
         """Pass the oldest item to `handle`, and return its result.
 
-        A subclass may continue with further items while there is nothing to await, until
-        `turn_ends_ns` on the clock of `perf_ns`.
+        A subclass may continue with further items while there is nothing to await, from `now_ns`
+        until `turn_ends_ns` on the clock of `perf_ns`.
 
         Raises:
             BaseException: what `handle` raised.
@@ -306,9 +315,11 @@ class MessageQueue(InlineCall, Generic[T]):
     async def _wait_for_rest(self, *, inline: bool) -> Coroutine[object, object, None] | None:
         """Wait for an item; return what an inline call left over to await, or raise its error."""
         waiter = asyncio.get_running_loop().create_future()
-        self._readers.append(waiter)
         if inline:
             self._inline_waiter = waiter
+        if not (inline and self.slice_ns):
+            # Where a test steps the clock, callbacks belong to a task: see `SteppedLoop`.
+            self._readers.append(waiter)
         try:
             await waiter
         except asyncio.CancelledError:
@@ -321,7 +332,7 @@ class MessageQueue(InlineCall, Generic[T]):
                 self._readers.remove(waiter)
         return self.take_rest()
 
-    # Past the queue
+    # Without its consumer
 
     def take_inline(self, item: T, inline_deadline_ns: int) -> bool:
         """Handle `item` now if possible before `inline_deadline_ns`; otherwise return False."""
@@ -333,13 +344,52 @@ class MessageQueue(InlineCall, Generic[T]):
             return False
         self._inline_waiter = None
         try:
-            done = self.run(self._handle, now_ns, item)  # type: ignore[arg-type]  # set to wait
+            self.context.run(self.run, self._handle, now_ns, item)
         finally:
-            self._inline_waiter = waiter
-        # The callback itself may have woken or cancelled the consumer.
-        if not done and not waiter.done():
-            waiter.set_result(None)
+            self._wait_on(waiter)
         return True
+
+    def _plan_turn(self, waiter: asyncio.Future[None]) -> None:
+        """Handle the queue in the loop's next iteration, in which its consumer would wake up."""
+        self._inline_waiter = None
+        self._call_soon(self.take_turn, waiter, context=self.context)
+
+    def take_turn(self, waiter: asyncio.Future[None]) -> None:
+        """Handle the queued items while the consumer waits for `waiter`, for at most a slice.
+
+        `run` and `_wait_on` are written out: calls that each message would pay for.
+        """
+        if waiter.done():
+            return  # the consumer was cancelled
+        now_ns = perf_ns()
+        turn_ends_ns = now_ns + self.slice_ns
+        try:
+            while self.items:
+                self._rest = self.handle_items(self._handle, now_ns, turn_ends_ns)
+                if self._rest is not None:
+                    break
+                if self.items and (now_ns := perf_ns()) >= turn_ends_ns:
+                    break
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as error:  # noqa: BLE001  # raised by the task, as if it had called
+            self._error = error
+        finally:
+            if self.items or self._rest is not None or self._error is not None:
+                self._wait_on(waiter)
+            else:
+                self._inline_waiter = waiter
+
+    def _wait_on(self, waiter: asyncio.Future[None]) -> None:
+        """Wake the consumer if an inline callback left something over; otherwise let it wait on.
+
+        The callback itself may have cancelled it, or have queued an item.
+        """
+        if (self._rest is not None or self._error is not None) and not waiter.done():
+            waiter.set_result(None)
+        self._inline_waiter = waiter
+        if self.items and not waiter.done():
+            self._plan_turn(waiter)
 
 
 def _wake(waiters: list[asyncio.Future[None]]) -> None:

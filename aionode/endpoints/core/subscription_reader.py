@@ -157,8 +157,21 @@ class SubscriptionReader(MessageQueue[Any]):
             last_sequences[gid] = sequence
         else:
             self._note_sequence(gid, sequence)
-        if not (inline_deadline_ns and self.take_inline(msg, inline_deadline_ns)):
-            self.put(msg, is_own=not inline_deadline_ns)
+        if inline_deadline_ns:
+            if not self.take_inline(msg, inline_deadline_ns):
+                self.put(msg)
+            return
+        # `put` written out: a call fewer.
+        queue = self.items
+        count = len(queue)
+        if (count >= self.own_from or count == self.weighed_from) and not self.make_room(msg):
+            return
+        queue.append((perf_ns(), msg))
+        if self._readers:
+            self.wake_readers()
+        elif (waiter := self._inline_waiter) is not None:
+            self._inline_waiter = None
+            self._call_soon(self.take_turn, waiter, context=self.context)
 
     # The callback: `take_inline` and `handle_items` have `CallbackRunner.receive` inlined, which
     # handles what is concurrent, offloaded or watched. They have to agree:
@@ -172,11 +185,11 @@ class SubscriptionReader(MessageQueue[Any]):
         waiter = self._inline_waiter
         if waiter is None or waiter.done() or (began_ns := perf_ns()) >= inline_deadline_ns:
             return False
-        runner, stats = self.runner, self.stats
+        runner, stats, context = self.runner, self.stats, self.context
         stats.received += 1
         self._inline_waiter = None
         try:
-            outcome = self._context.run(self._call, item)  # type: ignore[union-attr]  # `consume` has set it
+            outcome = context.run(self._call, item)
             took_ns = perf_ns() - began_ns
             if outcome is None and took_ns <= runner.budget_ns:
                 noted = stats._inline_ns
@@ -185,20 +198,21 @@ class SubscriptionReader(MessageQueue[Any]):
                     stats._record_noted()
                 if began_ns >= runner.thread_time.due_ns:
                     runner.thread_time.read(began_ns)
-                return True
-            done = self.run(runner.conclude, 0, took_ns, outcome)
+            else:
+                context.run(self.run, runner.conclude, 0, took_ns, outcome)
         except BaseException as error:  # noqa: BLE001  # handled as if the task had called
-            done = self.run(runner.conclude, 0, perf_ns() - began_ns, None, error)
+            context.run(self.run, runner.conclude, 0, perf_ns() - began_ns, None, error)
         finally:
-            self._inline_waiter = waiter
-        # The callback itself may have woken or cancelled the consumer.
-        if not done and not waiter.done():
-            waiter.set_result(None)
+            if self.items or self._rest is not None or self._error is not None:
+                self._wait_on(waiter)
+            else:
+                self._inline_waiter = waiter
         return True
 
     def handle_items(
         self,
         handle: Callable[[int, Any], Coroutine[object, object, None] | None],
+        now_ns: int,
         turn_ends_ns: int,
     ) -> Coroutine[object, object, None] | None:
         """Call the callback with each message until one leaves something to await.
@@ -208,10 +222,10 @@ class SubscriptionReader(MessageQueue[Any]):
         """
         runner, stats = self.runner, self.stats
         if runner.offload:
-            return super().handle_items(handle, turn_ends_ns)
+            return super().handle_items(handle, now_ns, turn_ends_ns)
         call, budget_ns = self._call, runner.budget_ns
         waited, took = stats._waited_ns, stats._took_ns
-        began_ns = perf_ns()
+        began_ns = now_ns
         while self.items:
             entered_ns, item = self.items.popleft()
             if self._writers:
@@ -389,7 +403,8 @@ class CausalReader(SubscriptionReader):
     ) -> None:
         """Take one message from a transport; see `Reader` for the arguments."""
         self._arriving = (gid, sequence)
-        super().deliver(msg, gid, sequence, source_ns, inline_deadline_ns, arrived_ns)
+        sample_info = SampleInfo(gid, sequence, source_ns, arrived_ns)
+        self._deliver_with(msg, sample_info, inline_deadline_ns)
 
     def put(self, item: Any, *, is_own: bool = False) -> bool:
         """Queue an item; see `MessageQueue.put`."""
@@ -402,10 +417,11 @@ class CausalReader(SubscriptionReader):
     def handle_items(
         self,
         handle: Callable[[int, Any], Coroutine[object, object, None] | None],
+        now_ns: int,
         turn_ends_ns: int,
     ) -> Coroutine[object, object, None] | None:
         """Call the callback with the oldest message."""
-        return MessageQueue.handle_items(self, handle, turn_ends_ns)
+        return MessageQueue.handle_items(self, handle, now_ns, turn_ends_ns)
 
     def noting(
         self, handle: Callable[[int, Any], Coroutine[Any, Any, None] | None]

@@ -250,7 +250,8 @@ class Timer(Entity):
         now_ns = self.clock.now_ns()
         if not (self._runner.is_sync and schedule.is_ready(now_ns) and schedule.period_ns):
             return False
-        done = self._inline_call.run(self._make_call, schedule.call(now_ns), now_ns)
+        call = self._inline_call
+        done = call.context.run(call.run, self._make_call, schedule.call(now_ns), now_ns)
         return done and not schedule.canceled
 
     def _call(self, expected_ns: int, now_ns: int) -> Coroutine[Any, Any, None] | None:

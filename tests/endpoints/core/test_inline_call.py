@@ -16,7 +16,7 @@ from aionode.errors import CallbackCancelledError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.testing import settle
+from aionode.testing import ManualClock, local_context, settle
 from tests.support.arrivals import reader_of, serve_of
 
 if TYPE_CHECKING:
@@ -214,6 +214,108 @@ async def test_before_the_node_runs_messages_queue(context: Context) -> None:
     async with node:
         await settle()
         assert heard == [1]
+
+
+# Turns of the queue
+
+
+def tell_task(node: Node) -> tuple[list[object], Subscription[Int32]]:
+    """Return a subscription, and the list of the tasks that its callback runs in."""
+    tasks: list[object] = []
+    return tasks, listen(node, lambda _: tasks.append(asyncio.current_task()))
+
+
+async def test_a_queued_message_wakes_no_task(node: Node) -> None:
+    """The loop calls back, which saves the step of a task for each message of the same process."""
+    tasks, subscription = tell_task(node)
+    await settle()
+    bring(subscription, 1, 2, inline_deadline_ns=0)
+    assert tasks == []
+    await settle()
+    assert tasks == [None, None]
+
+
+async def test_where_a_test_sets_the_time_a_task_calls() -> None:
+    """Otherwise what the callback schedules would not follow the clock."""
+    async with local_context(clock=ManualClock()) as context, Node("node", context=context) as node:
+        tasks, subscription = tell_task(node)
+        await settle()
+        bring(subscription, 1, inline_deadline_ns=0)
+        await settle()
+    assert isinstance(tasks[0], asyncio.Task)
+
+
+async def test_others_run_between_slow_callbacks_of_a_queue(node: Node) -> None:
+    """A turn ends after a millisecond, and the next one comes after what else is ready."""
+    order: list[object] = []
+
+    def callback(msg: Int32) -> None:
+        order.append(msg.data)
+        ends_ns = perf_ns() + 2_000_000
+        while perf_ns() < ends_ns:
+            pass
+        asyncio.get_running_loop().call_soon(order.append, "another")
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, 2, inline_deadline_ns=0)
+    await settle()
+    assert order == [1, "another", 2, "another"]
+
+
+async def test_a_callback_may_publish_to_itself(node: Node) -> None:
+    """What it queues is handled in the same turn, or after an inline call."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        if msg.data % 10 < 3:
+            bring(subscription, msg.data + 1, inline_deadline_ns=0)
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, inline_deadline_ns=0)
+    await settle()
+    bring(subscription, 11)
+    assert heard == [1, 2, 3, 11]
+    await settle()
+    assert heard == [1, 2, 3, 11, 12, 13]
+
+
+@pytest.mark.parametrize("deadline_ns", [0, None], ids=["in a turn", "inline"])
+async def test_what_waits_behind_a_rest_is_handled_after_it(
+    node: Node, deadline_ns: int | None
+) -> None:
+    """The consumer takes over, and the loop calls back again once it waits."""
+    heard: list[str] = []
+
+    async def work(msg: Int32) -> None:
+        await checkpoint()
+        heard.append(f"end {msg.data}")
+
+    def callback(msg: Int32) -> object:
+        heard.append(f"call {msg.data}")
+        return work(msg) if msg.data == 1 else None
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, 2, inline_deadline_ns=deadline_ns)
+    await settle()
+    bring(subscription, 3, inline_deadline_ns=deadline_ns)
+    await settle()
+    assert heard == ["call 1", "end 1", "call 2", "call 3"]
+
+
+async def test_a_message_queued_before_the_end_is_dropped(node: Node) -> None:
+    """Its turn is planned, and finds the consumer cancelled."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    await settle()
+    bring(subscription, 1, inline_deadline_ns=0)
+    subscription.destroy()
+    await settle()
+    assert heard == []
+    assert subscription.stats.dropped == 1
 
 
 # What stays the same
@@ -414,8 +516,9 @@ async def test_a_future_that_cannot_be_awaited_any_more_is_cancelled(node: Node)
 # The end
 
 
-async def test_a_callback_may_destroy_its_subscription(node: Node) -> None:
-    """Messages that the event still delivers are not accepted."""
+@pytest.mark.parametrize("deadline_ns", [0, None], ids=["in a turn", "inline"])
+async def test_a_callback_may_destroy_its_subscription(node: Node, deadline_ns: int | None) -> None:
+    """Messages that wait, or that the event still delivers, are not accepted."""
     heard: list[int] = []
 
     def callback(msg: Int32) -> None:
@@ -424,12 +527,15 @@ async def test_a_callback_may_destroy_its_subscription(node: Node) -> None:
 
     subscription = listen(node, callback)
     await settle()
-    bring(subscription, 1, 2)
+    bring(subscription, 1, 2, inline_deadline_ns=deadline_ns)
     await settle()
     assert heard == [1]
 
 
-async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Context) -> None:
+@pytest.mark.parametrize("deadline_ns", [0, None], ids=["in a turn", "inline"])
+async def test_an_error_after_destroying_ends_the_node_all_the_same(
+    context: Context, deadline_ns: int | None
+) -> None:
     """The cancelled consumer still has to raise it."""
 
     def callback(_: Int32) -> None:
@@ -441,7 +547,7 @@ async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Con
 
     async def transport() -> None:
         await settle()
-        bring(subscription, 1)
+        bring(subscription, 1, inline_deadline_ns=deadline_ns)
 
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(transport())
