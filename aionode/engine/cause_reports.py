@@ -41,7 +41,7 @@ MOST_AT_ONCE: Final = 1000
 T = TypeVar("T")
 
 Word: TypeAlias = Annotated[str, msgspec.Meta(max_length=1000)]
-"""A text of bounded length: each kept item keeps a reference to its report."""
+"""A text of bounded length, such as a name: more than any that ROS allows."""
 
 Key = tuple[Kind, bytes, int]
 """What identifies a sent item: its kind, gid and sequence number."""
@@ -78,10 +78,10 @@ class RunReport(msgspec.Struct, array_like=True):
     """
 
     kind: Kind
-    party: str
-    node: str
-    name: str
-    callback: str
+    party: Word
+    node: Word
+    name: Word
+    callback: Word
     gid: bytes
     sequence: int
     entered_ns: int
@@ -105,14 +105,14 @@ class SentReport(msgspec.Struct, array_like=True):
     """
 
     kind: Kind
-    party: str
-    node: str
-    name: str
+    party: Word
+    node: Word
+    name: Word
     gid: bytes
     sequence: int
     at_ns: int
     causes: list[RunReport]
-    goal: str = ""
+    goal: Word = ""
 
 
 class CauseReport(msgspec.Struct):

@@ -47,7 +47,7 @@ def to_chains(why: Why) -> str:
         for text, those in notes.items()
         for nodes in those.values()
     ]
-    return escaped("\n".join(lines))
+    return "\n".join(escaped(line, one_line=True) for line in lines)
 
 
 def chain(sent: Caused) -> list[str]:

@@ -53,7 +53,7 @@ def to_text(picture: Picture) -> str:
             rate = f"  {rate_of(edge)}" if edge.hz is not None else ""
             why = f"  DOES NOT MATCH: {edge.mismatch}" if edge.mismatch else ""
             lines.append(f"{MARKS[edge.change]}   {verb} {other[1]} [{types[other]}]{rate}{why}")
-    return escaped("\n".join(lines))
+    return "\n".join(escaped(line, one_line=True) for line in lines)
 
 
 def ids_of(picture: Picture) -> dict[tuple[str, str], str]:

@@ -29,9 +29,6 @@ MOST_EVENTS: Final = 1_000_000
 MOST_BYTES: Final = 256 << 20
 """Maximum bytes of the answers in a trace; a callback takes about 150."""
 
-MOST_NAME: Final = 300
-"""Maximum characters of a name that is repeated for each arrow."""
-
 
 class Trace(msgspec.Struct):
     """What the processes did during a period.
@@ -207,7 +204,7 @@ class Drawing:
                 "tid": track,
                 "ts": self._us(participant, sent.at_ns),
             }
-            name = f"{sent.kind} {sent.name[:MOST_NAME]}"
+            name = f"{sent.kind} {sent.name}"
             number_of = {"number": sent.sequence}
             self._events.append(
                 {"ph": "X", "name": name, "cat": "sent", "dur": 0.001, **place, "args": number_of}

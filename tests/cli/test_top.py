@@ -11,6 +11,7 @@ from aionode import Node
 from aionode.cli._nouns.top import top
 from aionode.cli._nouns.top.screen import TopApp
 from aionode.cli._support.output import Output
+from aionode.engine.observation import unchanging
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from aionode.interfaces.rcl_interfaces.msg import Log
@@ -73,6 +74,18 @@ async def test_one_look_is_text_or_a_record(
     assert (topic["topic"], topic["publishers"], topic["dropped"]) == ("/numbers", 1, 0)
     assert [each["node"] for each in record["nodes"]] == ["/robot"]
     assert record["notes"] == []
+
+
+async def test_the_name_of_a_program_forges_no_row(
+    robot: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its command line comes from its own report, and may contain a new line."""
+    monkeypatch.setitem(unchanging(), "program", "robot\n/other  0 Hz")
+    await top(robot, output=Output(), once=True, interval=0.01)
+
+    out = capsys.readouterr().out
+    assert "robot\\n/other  0 Hz" in out
+    assert "\n/other" not in out
 
 
 async def test_the_live_view_needs_a_terminal(robot: Node) -> None:

@@ -545,6 +545,15 @@ async def test_nobody_tells_what_another_has_sent() -> None:
     assert [each.node for each in found.sent] == ["/robot"]
 
 
+def test_a_name_of_another_process_forges_no_line() -> None:
+    """Its answer may contain any text, such as a new line with the name of another node."""
+    lie = Caused("message", "/out\n/other: no answer", "/node", "00", 1, 0, unknown="forgotten")
+
+    assert to_chains(Why("out", [lie])).splitlines() == [
+        "/out\\n/other: no answer (node, no longer kept) 0 us ago"
+    ]
+
+
 async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:
     """Frozen and older processes, and answers in another form or in another's name."""
     other = encoded(answer(CauseLog(), "d4", CauseQuestion()))

@@ -69,7 +69,7 @@ async def record(node: Node, path: Path, *, output: Output, duration: float = 10
         if nodes
     ]
     output.item(
-        escaped("\n".join(lines)),
+        "\n".join(escaped(line, one_line=True) for line in lines),
         {
             "file": str(path),
             "callbacks": trace.callbacks,

@@ -129,7 +129,7 @@ class TopApp(App[None]):
             column = table.columns.index("Hz")
             for key, row in table.rows.items():
                 self._history.setdefault((name, key), deque(maxlen=KEPT)).append(row[column])
-        self.query_one("#notes", Static).update(Text(escaped("\n".join(notes(found)))))
+        self.query_one("#notes", Static).update(Text("\n".join(notes(found))))
         self.show()
 
     @property

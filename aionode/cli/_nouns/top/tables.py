@@ -6,6 +6,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode.errors import escaped
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -235,7 +237,7 @@ def notes(rates: Rates) -> list[str]:
     ]
     if found.foreign:
         lines.append(f"{', '.join(found.foreign)}: not aionode, so without counts")
-    return lines
+    return [escaped(line, one_line=True) for line in lines]
 
 
 def record_of(rates: Rates) -> dict[str, Any]:
@@ -247,13 +249,18 @@ def record_of(rates: Rates) -> dict[str, Any]:
     return record | {"notes": notes(rates)}
 
 
+def shown(value: object) -> str:
+    """Return a cell as text on one line: programs and nodes of others may have any name."""
+    return escaped(str(value), one_line=True)
+
+
 def text_of(rates: Rates) -> str:
     """Return everything as text."""
     parts = []
     for table in tables_of(rates).values():
         if not table.rows:
             continue
-        rows = [table.columns, *(tuple(map(str, row)) for _, row in table.in_order())]
+        rows = [table.columns, *(tuple(map(shown, row)) for _, row in table.in_order())]
         widths = [max(len(row[column]) for row in rows) for column in range(len(table.columns))]
         parts.append(
             "\n".join(
