@@ -10,8 +10,8 @@ from time import sleep  # noqa: TID251  # of no time: it only lets go of the int
 from typing import TYPE_CHECKING, Any, Final, Generic, Self, TypeVar
 
 from aionode._process.concurrency import run_in_thread
-from aionode.bag.files.losses import LOSSES, losses_from
-from aionode.bag.files.metadata import FILE_NAME, read_metadata, start_in, topics_in
+from aionode.bag.files.losses import LOSSES, MISSING, losses_from, missing_from
+from aionode.bag.files.metadata import FILE_NAME, counts_in, read_metadata, start_in, topics_in
 from aionode.bag.files.order import in_order
 from aionode.bag.files.record import MOST_NS, Record, TopicInfo, time_of
 from aionode.bag.files.source import CHECK, McapSource
@@ -54,6 +54,8 @@ class Bag:
         connections: Each topic with each of its types.
         custom_data: Additional metadata from its recorder.
         losses: What its recorder lost, for each topic with losses; None if it does not report any.
+        missing: The messages of each topic that were written, as its metadata say, and that its
+            files no longer have: a file was cut, or removed.
     """
 
     def __init__(
@@ -76,6 +78,13 @@ class Bag:
                 self.topics[topic.name] = copy(topic)
             else:
                 known.message_count += topic.message_count
+        self.missing = missing_from(self.custom_data)
+        if self.missing:
+            del self.custom_data[MISSING]
+        for name, count in counts_in(self.metadata).items():
+            there = self.topics[name].message_count if name in self.topics else 0
+            if count > there:
+                self.missing[name] = self.missing.get(name, 0) + count - there
 
     def __repr__(self) -> str:
         return f"<Bag {self.path}: {self.message_count} messages of {len(self.topics)} topics>"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._selection import Selection
 from aionode.bag._writer import BagWriter
-from aionode.bag.files.losses import LOSSES, added_losses, losses_text
+from aionode.bag.files.losses import LOSSES, MISSING, added_losses, losses_text, missing_text
 from aionode.bag.files.order import in_order
 
 if TYPE_CHECKING:
@@ -95,10 +96,15 @@ def convert(
 
 
 def custom_data_of(bags: list[Bag]) -> dict[str, str]:
-    """Return the custom data of a bag made from others, including the sums of their losses."""
+    """Return the custom data of a bag made from others, including the sums of what they lack."""
     custom: dict[str, str] = {}
     for bag in bags:
         custom |= bag.custom_data
+    missing: Counter[str] = Counter()
+    for bag in bags:
+        missing.update(bag.missing)
+    if missing:
+        custom[MISSING] = missing_text(missing)
     losses = added_losses(bag.losses for bag in bags)
     return custom if losses is None else custom | {LOSSES: losses_text(losses)}
 

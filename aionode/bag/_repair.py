@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, NamedTuple
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -17,6 +17,7 @@ from aionode.bag._bag import Bag, merged_topics, source_of
 from aionode.bag.files.chunks import HEAD, MESSAGE, checked_content
 from aionode.bag.files.compression import TooLargeError
 from aionode.bag.files.lock import FolderLock
+from aionode.bag.files.losses import MISSING, missing_text
 from aionode.bag.files.mcap_writer import LIBRARY, MAGIC, McapWriter, Span, index_record
 from aionode.bag.files.metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
 from aionode.bag.files.source import CHECK, DAMAGE, McapSource, damaged
@@ -27,6 +28,8 @@ from aionode.errors import BagError
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from os import PathLike
+
+    from aionode.bag.files.source import Source
 
 __all__ = ["Checked", "check", "reindex"]
 
@@ -64,7 +67,8 @@ def check(path: str | PathLike[str]) -> list[Checked]:
 
     All messages are read. A damaged MCAP file is truncated after its last complete chunk and gets a
     new summary; earlier damaged chunks are turned into records that readers skip. Other files are
-    not changed. A bag that is being recorded is refused, also while its topics are silent.
+    not changed. A bag that is being recorded is refused, also while its topics are silent. What the
+    metadata counted and the files no longer have is in `Bag.missing` from then on.
 
     Args:
         path: A folder, or a single file.
@@ -388,7 +392,8 @@ class Scan:
 def reindex(path: str | PathLike[str]) -> None:
     """Rebuild the ``metadata.yaml`` of a bag from its files.
 
-    The custom data are kept if the old file is readable.
+    The custom data are kept if the old file is readable; what it counted and the files no longer
+    have is in `Bag.missing` from then on.
 
     Args:
         path: The folder.
@@ -416,7 +421,8 @@ def rebuild_metadata(folder: Path) -> None:
             count = sum(topic.message_count for topic in source.topics)
             parts.append((file.name, source.start_ns, source.end_ns, count))
         storage = "mcap" if ".mcap" in parts[0][0] else "sqlite3"
-        topics, custom = merged_topics(sources, []), custom_data_in(folder)
+        before = metadata_in(folder)
+        topics, custom = merged_topics(sources, []), custom_data_of(folder, sources, before)
         metadata = metadata_of(topics, parts, custom_data=custom, ros_distro="", storage=storage)
         if parts[0][0].endswith(".zstd"):
             metadata |= {"compression_format": "zstd", "compression_mode": "FILE"}
@@ -426,10 +432,16 @@ def rebuild_metadata(folder: Path) -> None:
             source.close()
 
 
-def custom_data_in(folder: Path) -> dict[str, str]:
-    """Return the custom data in the metadata of a folder; empty if they cannot be read."""
+def metadata_in(folder: Path) -> dict[str, Any]:
+    """Return the metadata of a folder; empty if they cannot be read."""
     with contextlib.suppress(BagError):
-        custom = read_metadata(folder).get("custom_data")
-        if isinstance(custom, dict):
-            return {str(key): str(value) for key, value in custom.items()}
+        return read_metadata(folder)
     return {}
+
+
+def custom_data_of(folder: Path, sources: list[Source], before: dict[str, Any]) -> dict[str, str]:
+    """Return the custom data of a folder, with what its metadata count and its files lack."""
+    told = before.get("custom_data")
+    custom = {str(key): str(value) for key, value in told.items()} if isinstance(told, dict) else {}
+    missing = Bag(folder, sources, before | {"custom_data": custom}).missing
+    return custom | {MISSING: missing_text(missing)} if missing else custom

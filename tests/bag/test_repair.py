@@ -106,6 +106,32 @@ def test_a_bag_without_metadata_gets_new_ones(tmp_path: Path) -> None:
     assert numbers(tmp_path / "run") == [0, 1, 2]
 
 
+@pytest.mark.parametrize("what", ["cut", "removed", "reindexed"])
+def test_what_was_recorded_and_is_gone_stays_known(what: str, tmp_path: Path) -> None:
+    """A repair writes new metadata, and their counts would make a part of a bag a whole one."""
+    record(tmp_path / "run")
+    file = tmp_path / "run" / "run_0.mcap"
+    if what == "removed":
+        record(tmp_path / "other", first_s=9, count=1)
+        (tmp_path / "other" / "other_0.mcap").rename(tmp_path / "run" / "run_1.mcap")
+        file.unlink()
+    else:
+        with file.open("rb") as stream:
+            summary = make_reader(stream).get_summary()
+        assert summary is not None
+        file.write_bytes(file.read_bytes()[: summary.chunk_indexes[1].chunk_start_offset])
+        bag.check(file)
+    repair = bag.reindex if what == "reindexed" else bag.check
+    for _ in range(2):
+        repair(tmp_path / "run")
+        with bag.open(tmp_path / "run") as run:
+            lacks = 3 - run.counts["/numbers"]
+            assert run.missing == {"/numbers": lacks, "/words": lacks}
+    bag.convert([tmp_path / "run"], tmp_path / "copy")
+    with bag.open(tmp_path / "copy") as copied:
+        assert copied.missing == {"/numbers": lacks, "/words": lacks}
+
+
 def test_a_whole_bag_is_left_as_it_is(tmp_path: Path) -> None:
     """Checking an intact bag changes nothing."""
     record(tmp_path / "run")

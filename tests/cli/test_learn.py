@@ -49,6 +49,17 @@ def test_export_over_the_limits_ends_with_1(
     assert main([*arguments, str(tmp_path / "lax"), "--max-dropped", "0.5"]) == 0
 
 
+@pytest.mark.parametrize("given", ["nothere", "/proc"])
+def test_a_file_that_is_missing_or_not_writable_is_one_line(
+    given: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A typing error is no reason for a traceback."""
+    run = demonstration(tmp_path / "run", length_sec=0.5, recorded_with=contract())
+    arguments = ["/proc/out", str(run)] if given == "/proc" else [str(tmp_path / "out"), given]
+    assert main(["learn", "export", "--lerobot", *arguments]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+
+
 LIMIT = "ulimit -f 600"
 """Files of the recorder have at most 300 kB, in blocks of POSIX."""
 

@@ -1,4 +1,4 @@
-"""Losses of a recorder, stored in the bag's custom data, which rosbag2 preserves."""
+"""What a bag lacks, stored in its custom data, which rosbag2 preserves."""
 
 from __future__ import annotations
 
@@ -8,10 +8,22 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-__all__ = ["LOSSES", "Lost", "added_losses", "losses_from", "losses_text"]
+__all__ = [
+    "LOSSES",
+    "MISSING",
+    "Lost",
+    "added_losses",
+    "losses_from",
+    "losses_text",
+    "missing_from",
+    "missing_text",
+]
 
 LOSSES: Final = "messages_lost"
 """The key for losses in the custom data of a bag."""
+
+MISSING: Final = "messages_missing"
+"""The key for messages that were written, and are no longer in the files of a bag."""
 
 
 class Lost(NamedTuple):
@@ -55,3 +67,17 @@ def added_losses(losses: Iterable[Mapping[str, Lost] | None]) -> dict[str, Lost]
                 before.in_transport + lost.in_transport, before.in_recorder + lost.in_recorder
             )
     return total
+
+
+def missing_text(missing: Mapping[str, int]) -> str:
+    """Return numbers of missing messages by topic as text for the custom data."""
+    return json.dumps(missing)
+
+
+def missing_from(custom_data: Mapping[str, str]) -> dict[str, int]:
+    """Return the numbers of missing messages by topic; empty if the custom data contain none."""
+    try:
+        listed = json.loads(custom_data[MISSING])
+        return {str(name): int(count) for name, count in listed.items() if int(count) > 0}
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+        return {}  # a user's own entry of this name

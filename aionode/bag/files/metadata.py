@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FILE_NAME",
     "FilePart",
+    "counts_in",
     "metadata_of",
     "metadata_text",
     "read_metadata",
@@ -160,6 +161,18 @@ def start_in(metadata: Mapping[str, Any]) -> int:
     told = metadata.get("starting_time")
     start = told.get("nanoseconds_since_epoch") if isinstance(told, dict) else None
     return start if isinstance(start, int) else NEVER_NS
+
+
+def counts_in(metadata: Mapping[str, Any]) -> dict[str, int]:
+    """Return the number of messages of each topic as a bag's metadata say, as far as they do."""
+    listed = metadata.get("topics_with_message_count")
+    counts: dict[str, int] = {}
+    for entry in listed if isinstance(listed, list) else ():
+        told = entry.get("topic_metadata") if isinstance(entry, dict) else None
+        name = told.get("name") if isinstance(told, dict) else None
+        if isinstance(name, str) and isinstance(entry.get("message_count"), int):
+            counts[name] = counts.get(name, 0) + entry["message_count"]
+    return counts
 
 
 def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:

@@ -19,9 +19,10 @@ from aionode.cli._nouns.bag.options import (
     time_span,
 )
 from aionode.cli._nouns.bag.replay import diff_command, shrink_command
+from aionode.cli._support.files import FilesGroup
 from aionode.cli._support.options import json_option
 from aionode.cli._support.output import Output
-from aionode.errors import CommandError, escaped
+from aionode.errors import escaped
 
 if TYPE_CHECKING:
     from aionode.bag import Bag, TopicInfo
@@ -29,24 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["bag_command"]
 
 
-class BagGroup(click.Group):
-    """A group that reports a missing or unreadable file in one line, with its name."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run a command.
-
-        Raises:
-            CommandError: a file cannot be read or written.
-        """
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            raise CommandError(str(error)) from error
-
-
-@click.group("bag", cls=BagGroup)
+@click.group("bag", cls=FilesGroup)
 def bag_command() -> None:
     """Record, play, inspect, repair and compare bags."""
 
@@ -102,6 +86,7 @@ def info_text(opened: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
         f"Messages:          {opened.message_count}",
     ]
     lines.append(f"Lost:              {lost_text(opened)}")
+    lines += [f"Missing:           {missing_text(opened)}"] if opened.missing else []
     lines += [f"Custom data:       {key}={value}" for key, value in opened.custom_data.items()]
     for topic in topics:
         lines.append(f"Topic: {topic.name} | Type: {topic.type} | Count: {topic.message_count}")
@@ -125,6 +110,11 @@ def lost_text(opened: Bag) -> str:
     )
 
 
+def missing_text(opened: Bag) -> str:
+    """Return one line about what was written to a bag and is no longer in its files."""
+    return "; ".join(f"{name}: {count}" for name, count in sorted(opened.missing.items()))
+
+
 def info_record(opened: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
     """Return the contents of a bag as a record."""
     return {
@@ -137,6 +127,7 @@ def info_record(opened: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
         "lost": None
         if opened.losses is None
         else {name: lost._asdict() for name, lost in opened.losses.items()},
+        "missing": opened.missing,
         "topics": [
             {
                 "name": topic.name,
@@ -277,3 +268,7 @@ def check_command(path: str, json: bool) -> None:
     for repair in bag.check(path):
         state = f"repaired, {repair.removed_bytes} bytes removed" if repair.repaired else "ok"
         output.item(f"{repair.file}: {state}, {repair.messages} messages", repair._asdict())
+    with bag.open(path) as opened:
+        if opened.missing:
+            text = f"missing, as metadata.yaml counted: {missing_text(opened)}"
+            output.item(escaped(text, one_line=True), {"missing": opened.missing})

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode.cli._nouns.bag.terminal import SPACE, keys_pressed, progress_shown
+from aionode.cli._support.files import FilesGroup
 from aionode.cli._support.options import interfaces_option, json_option, positive
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_until_stopped, run_verb
@@ -27,7 +28,7 @@ __all__ = ["learn_command"]
 SHARE = click.FloatRange(0, 1)
 
 
-@click.group("learn")
+@click.group("learn", cls=FilesGroup)
 def learn_command() -> None:
     """Turn demonstrations into data sets for robot learning, by a contract.
 
