@@ -26,6 +26,12 @@ __all__ = ["Checked", "check"]
 SILENT_NS: Final = 500_000_000
 """How long nothing may come of a topic that is observed, beyond its `max_age`."""
 
+FLOOD_HZ: Final = 2000.0
+"""The rate from which a topic of a robot is a flood, if as many messages arrive."""
+
+FLOOD_ROWS: Final = 10
+"""The messages for each row from which they count as many."""
+
 
 @dataclass(frozen=True, slots=True)
 class Checked:
@@ -77,6 +83,14 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
         topic_of(contract, entry, each, rows, position)
         for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
     ]
+    floods = [
+        f"{node.resolve_topic_name(each['topic'])}: {each['messages']} messages in "
+        f"{duration_sec:g} s, published faster than they are read, which makes others late or "
+        "lost; lower its rate"
+        for each in topics
+        if each["rate_hz"] > FLOOD_HZ
+        and each["messages"] > FLOOD_ROWS * contract.fps * duration_sec
+    ]
     lines, problems = [], []
     for entry, topic in zip(contract.entries, topics, strict=True):
         name = node.resolve_topic_name(entry.topic)
@@ -89,6 +103,8 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
     )
     if not problems and not len(rows.times):
         problems.append("no picture had everything that is fresh enough; see the ages above")
+    if problems:
+        problems = floods + problems  # which they may have caused
     followed = lags(contract, rows) if rows.starts else {}
     lines += [
         f"{name}: observed {lag * 1e3:.0f} ms after its command" for name, lag in followed.items()

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode import bag
+from aionode.bag.files.metadata import FILE_NAME
 from aionode.errors import BagError, DatasetError
 from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
 from aionode.learn._episode import PART, Job, contract_in, run
@@ -112,7 +113,12 @@ def export(
     paths = [path for each in bags for path in bags_in(Path(each))]
     for path in paths:
         repair(path)
-    paths = [path for path in paths if failures or not failed(path)]
+    wanted = [path for path in paths if failures or not failed(path)]
+    if not wanted:
+        left_out = f"{counted(len(paths), 'episode')}, and only failures"
+        problem = left_out if paths else "no bag is given"
+        raise DatasetError(str(out), problem, "--failures takes them" if paths else "")
+    paths = wanted
     found = contract or common_contract(paths)
     check_sizes(found)
     cameras = max(sum(1 for each in found.observations if each.image), 1)
@@ -132,8 +138,8 @@ def export(
         report["path"]: wrong for report in reports if (wrong := over(report, bounds, found.fps))
     }
     if not episodes:
-        first = next(iter(problems.values()), ["no bag is given"])
-        raise DatasetError(str(out), f"no bag has a row: {'; '.join(first)[:1000]}")
+        name, first = next(iter(problems.items()))
+        raise DatasetError(str(out), f"no bag has a row; {name}: {'; '.join(first)[:1000]}")
     write_dataset(place, found, episodes, codec)
     wrong = check_dataset(place)
     if wrong:
@@ -147,9 +153,17 @@ def export(
 
 def bags_in(path: Path) -> list[Path]:
     """Return a bag, or the bags in a folder, in the order of their names."""
-    if not path.is_dir() or any(path.glob("*.yaml")) or any(path.glob("*.mcap")):
+    if not path.is_dir() or is_bag(path):
         return [path]
-    return [each for each in sorted(path.iterdir()) if any(each.glob("*.mcap"))] or [path]
+    return [each for each in sorted(path.iterdir()) if each.is_dir() and is_bag(each)] or [path]
+
+
+def is_bag(folder: Path) -> bool:
+    """Return whether a folder is a bag, which may lack its metadata or its files."""
+    return any(
+        each.name == FILE_NAME or {".mcap", ".db3"} & set(each.suffixes)
+        for each in folder.iterdir()
+    )
 
 
 def repair(path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from aionode.errors import escaped
 from aionode.learn._metadata import OUTCOME_KEY
+from aionode.learn._scan import full_name
 
 if TYPE_CHECKING:
     from aionode.bag import Bag
@@ -74,7 +75,11 @@ def report_of(
         "gaps_sec": rows.gaps,
         "topics": [
             topic_of(contract, entry, each, rows, position)
-            | {"unreadable": unreadable.get(entry.topic, 0), "lost": lost.get(entry.topic, 0)}
+            | {
+                "unreadable": unreadable.get(entry.topic, 0),
+                "lost": lost.get(full_name(entry.topic), 0),
+                "gone": opened.missing.get(full_name(entry.topic), 0),
+            }
             for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
         ],
         "lag_sec": lags(contract, rows) if kept else {},
@@ -108,6 +113,7 @@ def topic_of(
         "rate_hz": float(1 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 0.0,
         "offset_sec": spread(offsets) if entry.is_captured else None,
         "age_sec": spread(rows.ages[position]),
+        "max_age_sec": contract.max_age(entry),
         "stale": rows.stale[position],
         "repeated": len(chosen) - used,
         "unused": int(chosen[-1] - chosen[0] + 1 - used) if len(chosen) else 0,
@@ -173,9 +179,10 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
     """Return what is over the limits."""
     found = [*report["problems"]]
     dropped = share(report["missing"], report["missing"] + report["rows"])
+    is_short = not report["rows"] or dropped > limits.dropped
     if not report["rows"]:
         found.append("no rows")
-    elif dropped > limits.dropped:
+    elif is_short:
         found.append(
             f"{dropped:.1%} of the rows between the first and the last are missing; "
             f"{limits.dropped:.1%} fits"
@@ -196,9 +203,12 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
                 ("invalid", f"not as in the contract: {topic['problem']}"),
                 ("backwards", "with a time that is not after the one before"),
                 ("lost", "lost by the recorder"),
+                ("gone", "recorded, and no longer in the bag: its file was cut, or is missing"),
             )
             if topic[kind]
         ]
+        if is_short and topic["messages"] and topic["stale"] > limits.dropped * report["rows"]:
+            found.append(stale_text(topic))
         offset = topic["offset_sec"]
         if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
             found.append(
@@ -224,7 +234,7 @@ def trouble_of(
         topic: The numbers of `topic_of`.
         rows: How many rows there could have been.
     """
-    name, age, limit = entry.topic, topic["age_sec"], contract.max_age(entry)
+    name = entry.topic
     found = []
     if topic["invalid"]:
         found.append(f"{name}: {counted(topic['invalid'], 'message')}: {topic['problem']}")
@@ -244,12 +254,17 @@ def trouble_of(
                 "rate, or fps"
             )
     elif topic["stale"] > Limits().dropped * rows:
-        worst = f", up to {age['max'] * 1e3:.0f} ms" if age else ""
-        found.append(
-            f"{name}: too old for {counted(topic['stale'], 'row')}: max_age is {limit * 1e3:.0f} "
-            f"ms, and it has {topic['rate_hz']:.1f} Hz{worst}; raise its rate or max_age"
-        )
+        found.append(stale_text(topic | {"topic": name}))
     return found
+
+
+def stale_text(topic: dict[str, Any]) -> str:
+    """Return that a topic is too old for rows, with what to do."""
+    return (
+        f"{topic['topic']}: too old for {counted(topic['stale'], 'row')}: max_age is "
+        f"{topic['max_age_sec'] * 1e3:.0f} ms, and it has {topic['rate_hz']:.1f} Hz; raise its "
+        "rate or max_age"
+    )
 
 
 def share(part: float, whole: float) -> float:

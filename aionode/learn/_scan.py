@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import struct
 from typing import TYPE_CHECKING, Any, Final
 
@@ -94,7 +95,8 @@ def scanned(
     by_topic: dict[str, list[Collected]] = {}
     for each in collected:
         by_topic.setdefault(full_name(each.entry.topic), []).append(each)
-    problems = [
+    problems = [absence_of(opened, name) for name in by_topic if not opened.counts.get(name)]
+    problems += [
         f"{name} is {opened.topics[name].type} in the bag, and {each[0].entry.type} in the contract"
         for name, each in by_topic.items()
         if name in opened.topics and opened.topics[name].type != each[0].entry.type
@@ -104,6 +106,14 @@ def scanned(
         for each in by_topic[record.topic]:
             each.take(record)
     return [each.series() for each in collected], problems
+
+
+def absence_of(opened: Bag, name: str) -> str:
+    """Return that a bag has no message of a topic, with a topic of a similar name if it has one."""
+    there = sorted(each for each, count in opened.counts.items() if count)
+    near = difflib.get_close_matches(name, there, 1)
+    remedy = f"did you mean {near[0]}?" if near else "was its driver at work?"
+    return f"{name}: no messages in the bag; {remedy}"
 
 
 def full_name(topic: str) -> str:

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aionode import image
-from aionode.errors import DatasetError
+from aionode.errors import BagError, DatasetError
 from aionode.learn import Limits, check_dataset, export
 from aionode.learn._alignment import Series, aligned
 from tests.support.demonstrations import (
@@ -117,8 +117,64 @@ def test_rows_without_fresh_joints_are_dropped_and_told(tmp_path: Path) -> None:
 def test_a_topic_that_is_missing_is_named(tmp_path: Path) -> None:
     """Nothing can be made of such a recording."""
     bag = demonstration(tmp_path / "run", commands=None)
-    with pytest.raises(DatasetError, match="no bag has a row"):
+    with pytest.raises(DatasetError, match=r"no bag has a row; .*/command: no messages in the bag"):
         dataset(tmp_path, bag)
+
+
+def test_a_topic_that_one_bag_of_several_lacks_is_named(tmp_path: Path) -> None:
+    """Its task would be missing in the data set; the others make one."""
+    bags = [
+        demonstration(tmp_path / "whole"),
+        demonstration(tmp_path / "deaf", joints=None),
+    ]
+    result = export(tmp_path / "out", bags, contract=contract(), jobs=1)
+    assert result.problems[str(bags[1])][0].startswith("/joint_states: no messages in the bag")
+
+
+def test_a_topic_of_a_similar_name_is_suggested(tmp_path: Path) -> None:
+    """A typing error in the contract is the usual reason."""
+    observations = contract().to_dict()["observations"]
+    observations[1]["topic"] = "/joint_state"
+    bag = demonstration(tmp_path / "run")
+    with pytest.raises(DatasetError, match=re.escape("did you mean /joint_states?")):
+        dataset(tmp_path, bag, contract=contract(observations=observations))
+
+
+def test_a_topic_that_is_too_old_for_all_rows_is_named(tmp_path: Path) -> None:
+    """The bag has its messages, and still nothing can be made of it."""
+    bag = demonstration(tmp_path / "run", joints=Timing(100, gaps=[(0.1, 2.0)]), cameras=[
+        Timing(30, gaps=[(0.0, 0.5)])
+    ])  # fmt: skip
+    with pytest.raises(DatasetError, match=r"no rows; /joint_states: too old for \d+ rows"):
+        dataset(tmp_path, bag)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_bag_that_was_cut_after_its_recording_says_what_is_missing(
+    tmp_path: Path, times: int
+) -> None:
+    """The first export repairs it, and no later one may take what is left for the whole."""
+    path = demonstration(tmp_path / "run", length_sec=6, outcome="success")
+    (file,) = path.glob("*.mcap")
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    for attempt in range(times):
+        found = export(tmp_path / f"out{attempt}", [path], contract=contract(), jobs=1)
+        assert 30 < found.rows < 150
+        assert re.search(r"! /camera0: \d+ messages recorded, and no longer in the bag", found.text)
+        assert found.problems
+
+
+def test_no_bag_of_a_folder_is_left_out(tmp_path: Path) -> None:
+    """Not one of SQLite, and not one whose files are gone, which is an error."""
+    runs = tmp_path / "runs"
+    demonstration(runs / "a", length_sec=0.5)
+    (runs / "contract.yaml").touch()
+    (runs / "b").mkdir()
+    (runs / "b" / "metadata.yaml").touch()
+    with pytest.raises(BagError, match="runs/b"):
+        export(tmp_path / "out", [runs], contract=contract(), jobs=1)
+    shutil.rmtree(runs / "b")
+    assert export(tmp_path / "out", [runs], contract=contract(), jobs=1).episodes == 1
 
 
 def test_topics_that_arrive_late_are_aligned_by_their_stamps(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from aionode import bag, image
 from aionode.action import GoalStatus
 from aionode.clock import Time
 from aionode.engine.context import Context
-from aionode.errors import BagError, BagWriteError, EpisodeError
+from aionode.errors import BagError, BagWriteError, DatasetError, EpisodeError
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn import Contract, Episodes, RecordEpisode, check, export
@@ -69,9 +69,11 @@ def stamped(**changes: Any) -> Contract:
 
 
 @asynccontextmanager
-async def recording(folder: Path, **options: Any) -> AsyncIterator[tuple[Robot, Episodes]]:
+async def recording(
+    folder: Path, *, clock: ManualClock | None = None, **options: Any
+) -> AsyncIterator[tuple[Robot, Episodes]]:
     """Run a robot, and a recorder of episodes."""
-    async with local_context() as context:
+    async with local_context(clock=clock) as context:
         robot = Robot(context)
         async with robot.node, Episodes(folder, stamped(), context=context, **options) as episodes:
             yield robot, episodes
@@ -124,6 +126,8 @@ async def test_an_error_in_the_block_is_a_failure_which_an_export_leaves_out(
     assert metadata(tmp_path / "runs/episode_0001")["outcome"] == "failure"
     assert export(tmp_path / "out", [tmp_path / "runs"], jobs=1).episodes == 1
     assert export(tmp_path / "all", [tmp_path / "runs"], jobs=1, failures=True).episodes == 2
+    with pytest.raises(DatasetError, match="1 episode, and only failures; --failures takes them"):
+        export(tmp_path / "none", [tmp_path / "runs/episode_0001"])
 
 
 async def test_services_begin_and_end_episodes(tmp_path: Path) -> None:
@@ -244,7 +248,8 @@ async def test_an_episode_without_a_task_is_refused(tmp_path: Path) -> None:
 
 async def test_what_was_recorded_is_exported(tmp_path: Path) -> None:
     """With the contract and the task of the recording."""
-    async with recording(tmp_path / "runs") as (robot, episodes):
+    clock = ManualClock(Time(nanoseconds=START_NS))
+    async with recording(tmp_path / "runs", clock=clock) as (robot, episodes):
         for _ in range(2):
             async with episodes.record():
                 await robot.step(40)
@@ -361,3 +366,27 @@ async def test_a_check_names_what_fell_silent() -> None:
         "/camera0: silent for the last 3.0 s; is its driver at work?",
         "/joint_states: silent for the last 3.0 s; is its driver at work?",
     ]
+
+
+async def test_a_check_names_a_flood_before_what_it_keeps_from_arriving() -> None:
+    """Whoever looks for a camera's driver looks in the wrong place."""
+    clock = ManualClock(Time(nanoseconds=START_NS))
+    async with local_context(clock=clock) as context:
+        robot = Robot(context)
+        async with (
+            robot.node,
+            Node("checker", context=context) as node,
+            asyncio.TaskGroup() as tasks,
+        ):
+            checking = tasks.create_task(check(node, stamped(), 1.0))
+            await settle()
+            for number in range(400):
+                stamp_ns = START_NS + number * 100_000
+                state = JointState(name=["joint"], position=[0.0], velocity=[0.0])
+                state.header.stamp = stamp(stamp_ns)
+                robot.joints.publish(state)
+                await settle()
+            await clock.advance(1.0)
+    first, second, *_ = checking.result().problems
+    assert first.startswith("/joint_states: 400 messages in 1 s, published faster than they are")
+    assert second.startswith("/camera0: published, but nothing arrived")
