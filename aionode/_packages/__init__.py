@@ -17,6 +17,7 @@ from aionode._packages._here import (
 )
 from aionode._packages._packages import Packages
 from aionode._packages._standard import program_module, remark_on, standard_packages
+from aionode._packages._starters import starter_file
 from aionode._packages._workspace import package_of, workspace_of
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "remark_on",
     "stand_in",
     "standard_packages",
+    "starter_file",
     "use",
     "use_stand_ins",
     "workspace_of",

@@ -27,6 +27,15 @@ YIELDING: Final = (
     "nav2_common",
     "nav2_simple_commander",
     "py_trees_ros",
+    "ros2action",
+    "ros2cli",
+    "ros2lifecycle",
+    "ros2node",
+    "ros2param",
+    "ros2pkg",
+    "ros2run",
+    "ros2service",
+    "ros2topic",
     "turtlebot4_navigation",
 )
 """The packages that yield to one with the same name in the workspace or installed."""

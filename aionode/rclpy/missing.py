@@ -15,8 +15,7 @@ PURE_PYTHON: Final = """
     action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics
     interactive_markers joint_state_publisher laser_geometry
     rclpy_message_converter
-    resource_retriever ros2action ros2cli ros2component ros2doctor ros2interface
-    ros2lifecycle ros2node ros2param ros2pkg ros2run ros2service ros2topic rosapi rosbridge_library
+    resource_retriever ros2component ros2doctor ros2interface rosapi rosbridge_library
     rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros
     teleop_twist_joy teleop_twist_keyboard tf2_tools twist_stamper urdf_parser_py
 """

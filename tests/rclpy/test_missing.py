@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
         ("my_robot_interfaces", "--interfaces FOLDER"),
         ("plansys2_msgs.srv", "--interfaces FOLDER"),
         ("launch_testing.actions", "fixtures for pytest"),
-        ("ros2topic.api", "PYTHONPATH"),
+        ("ros2doctor.api", "PYTHONPATH"),
         ("rqt_gui_py", "where ROS 2 is installed"),
         ("rospy", "ROS 1"),
         ("tf2_kdl", "tf_transformations"),

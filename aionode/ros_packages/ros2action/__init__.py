@@ -1,0 +1,1 @@
+"""Programs import `ros2action.api`: what `ros2 action` is made of."""

@@ -1,0 +1,14 @@
+"""The base of verbs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["VerbExtension"]
+
+
+class VerbExtension:
+    """A verb of a command: ``main(args=…)`` does it, and ``add_arguments(parser, cli_name)``."""
+
+    NAME: Any = None
+    EXTENSION_POINT_VERSION = "0.1"

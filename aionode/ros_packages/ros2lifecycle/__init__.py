@@ -1,0 +1,1 @@
+"""Programs import `ros2lifecycle.api`: what `ros2 lifecycle` is made of."""

@@ -1,0 +1,1 @@
+"""Programs import `ros2node.api`: what `ros2 node` is made of."""

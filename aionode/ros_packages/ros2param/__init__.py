@@ -1,0 +1,1 @@
+"""Programs import `ros2param.api`: what `ros2 param` is made of."""
