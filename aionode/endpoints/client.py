@@ -138,10 +138,10 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         response: ResponseT
         try:
             if limit is None:
-                response = await self._exchange(request)
+                response = await self._answer(self._begin(request))
             else:
                 async with limit:
-                    response = await self._exchange(request)
+                    response = await self._answer(self._begin(request))
         except TimeoutError as error:
             self.stats.errors += 1
             if limit is not None and timeout_sec is not None and limit.expired():
@@ -184,9 +184,8 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._futures.start(tasks)
         return task
 
-    async def _exchange(self, request: RequestT) -> Any:
-        """Send through every transport, and return the first answer."""
-        exchange = self._begin(request)
+    async def _answer(self, exchange: Exchange) -> Any:
+        """Return the first answer to a request."""
         try:
             return await exchange.answer
         except EntityDestroyedError:

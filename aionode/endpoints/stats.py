@@ -40,11 +40,12 @@ class Distribution:
         before_reading: Called before anything is read, to flush buffered values.
     """
 
-    __slots__ = ("_before_reading", "_buckets", "_max_ns")
+    __slots__ = ("_before_reading", "_buckets", "_max_ns", "_noted")
 
     def __init__(self, before_reading: Callable[[], None] | None = None) -> None:
         self._buckets: dict[int, int] = {}
         self._max_ns = 0
+        self._noted: list[int] = []  # durations that are not in the buckets yet
         self._before_reading = before_reading
 
     def __repr__(self) -> str:
@@ -67,15 +68,14 @@ class Distribution:
 
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
-        if duration_ns > self._max_ns:  # noqa: PLR1730  # max() is a call, on the hot path
-            self._max_ns = duration_ns
-        shifted = duration_ns + _OFFSET
-        octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
-        bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
-        try:
-            self._buckets[bucket] += 1
-        except KeyError:
-            self._buckets[bucket] = 1
+        noted = self._noted
+        noted.append(duration_ns)
+        if len(noted) >= NOTED_CALLS:
+            self._count_noted()
+
+    def _count_noted(self) -> None:
+        noted, self._noted = self._noted, []
+        self._record_all(noted)
 
     def _record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
         """Record each duration, in this and in `others`.
@@ -109,6 +109,7 @@ class Distribution:
     def _read(self) -> dict[int, int]:
         if self._before_reading is not None:
             self._before_reading()
+        self._count_noted()
         return self._buckets
 
     @property

@@ -212,7 +212,7 @@ class CallbackRunner:
             BaseException: `error`, if it is not an `Exception` or `on_error` is ``"raise"``.
         """
         stats = self.stats
-        if outcome is not None and isinstance(outcome, Awaitable):
+        if _is_awaitable(outcome):
             stats.queue_wait.record(waited_ns)
             return self._finish(_Measured(self, outcome))
         stats._waited_ns.append(waited_ns)
@@ -258,7 +258,7 @@ class CallbackRunner:
             if isinstance(error, asyncio.CancelledError):
                 raise self._cancelled(error) from error
             raise
-        if outcome is not None and isinstance(outcome, Awaitable):
+        if _is_awaitable(outcome):
             return _Measured(self, outcome)
         ended_ns = perf_ns()
         self._record_sync(ended_ns - began_ns, ended_ns)
@@ -485,9 +485,18 @@ class _Offloaded:
             raise RuntimeError(f"{self._runner.subject} raised StopIteration") from error
 
 
+UNFINISHED = _Measured, _Offloaded
+
+
+def _is_awaitable(outcome: Any) -> bool:
+    """Return whether to await what a callback returned."""
+    # The second question alone takes several times as long, for each response of a service.
+    return hasattr(outcome, "__await__") and isinstance(outcome, Awaitable)
+
+
 def is_unfinished(entered: object) -> bool:
     """Return whether `CallbackRunner.outcome` has to await what `CallbackRunner.enter` returned."""
-    return isinstance(entered, _Measured | _Offloaded)
+    return isinstance(entered, UNFINISHED)
 
 
 # Queues

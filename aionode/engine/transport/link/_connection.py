@@ -10,6 +10,7 @@ import secrets
 import socket
 from collections import deque
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
 from aionode._process.concurrency import SLICE_NS
@@ -110,9 +111,20 @@ class LinkOwner(Protocol):
     """Handles the events of a connection."""
 
     def on_call(
-        self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
+        self,
+        connection: Connection,
+        kind: int,
+        sequence: int,
+        source_ns: int,
+        client: bytes,
+        payload: Data,
+        inline_deadline_ns: int,
     ) -> None:
-        """Handle a REQUEST or REPLY; callbacks may run within this call until the deadline."""
+        """Handle a REQUEST or REPLY; callbacks may run within this call until the deadline.
+
+        Raises:
+            FrameError: it does not belong here; this ends the link.
+        """
 
     def on_control(self, connection: Connection, control: Control) -> None:
         """Handle a control frame."""
@@ -156,6 +168,7 @@ class Connection:
         self._sock: socket.socket | None = sock
         self._fd = sock.fileno()
         self._owner = owner
+        self._on_call = partial(owner.on_call, self)
         self._parser = FrameParser()
         self._max_held = HEADER_SIZE + SECRET_SIZE - 1  # a Hello is a header and a secret
         # Descriptors received before the rest of their frames.
@@ -454,7 +467,9 @@ class Connection:
             if ancillary:
                 self._take_descriptors(ancillary)
             deadline_ns = perf_ns() + SLICE_NS
-            data = self._parser.take_messages(data, self.receivers.handlers, deadline_ns)
+            data = self._parser.take_messages(
+                data, self.receivers.handlers, self._on_call, deadline_ns
+            )
             if data:
                 self._take_frames(self._parser.feed(data), deadline_ns)
         except FrameError as error:
@@ -477,7 +492,9 @@ class Connection:
                     handler(payload, frame.sequence, frame.source_ns, inline_deadline_ns)
             elif kind in (REPLY, REQUEST):
                 payload = self._map(frame) if frame.in_shm else frame.payload
-                self._owner.on_call(self, frame, payload, inline_deadline_ns)
+                self._on_call(
+                    kind, frame.sequence, frame.source_ns, frame.gid, payload, inline_deadline_ns
+                )
             else:
                 self._take_control(decode_control(frame))
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from aionode._process.recent import Recent
 from aionode._process.restart import doubled
 from aionode.clock import MachineTime
+from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.link._connection import Connection, flush
 from aionode.engine.transport.link._continuation import STOPS, LinkSecrets, seal
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from aionode.engine.transport.link._listener import Advertisement, Listener
-    from aionode.engine.transport.link._protocol import Control, Frame
+    from aionode.engine.transport.link._protocol import Control
     from aionode.engine.transport.link._registry import PeerDirectory
     from aionode.engine.transport.link._send_queue import LinkSendQueue
     from aionode.engine.wire.cdr import Data
@@ -461,23 +462,31 @@ class LinkManager:
         self.later(AGAIN_S, lambda: self._try_again(participant))
 
     def on_call(
-        self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
+        self,
+        connection: Connection,
+        kind: int,
+        sequence: int,
+        source_ns: int,
+        client: bytes,
+        payload: Data,
+        inline_deadline_ns: int,
     ) -> None:
         """Pass a request to its server, or a response to its call."""
         if not connection.participant:
-            raise FrameError(f"expected HELLO, got kind {frame.kind}")
-        if frame.kind == REPLY:
-            requester = self.requesters.get(frame.gid)
-            call = None if requester is None else requester.calls.get(frame.sequence)
+            raise FrameError(f"expected HELLO, got kind {kind}")
+        if kind == REPLY:
+            requester = self.requesters.get(client)
+            call = None if requester is None else requester.calls.get(sequence)
             if call is not None:  # otherwise it was just cancelled
-                call.replied(frame, payload)
+                call.replied(payload, SampleInfo(client, sequence, source_ns))
             return
         gid, request = server_of(payload)
         server = self.servers.get(gid)
         if server is None:
-            connection.send(End(frame.gid, frame.sequence))
+            connection.send(End(client, sequence))
         else:
-            server.take(connection, frame, request, inline_deadline_ns)
+            sample_info = SampleInfo(client, sequence, source_ns)
+            server.take(connection, request, sample_info, inline_deadline_ns)
 
     def on_control(self, connection: Connection, control: Control) -> None:
         """Handle a control frame."""

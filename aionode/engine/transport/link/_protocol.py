@@ -61,6 +61,11 @@ Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
 running its callback inline.
 """
 
+CallHandler = Callable[[int, int, int, bytes, bytes | memoryview, int], None]
+"""Handles a REQUEST or REPLY: its kind, number and time, the gid of the client, the payload, and
+the `perf_ns` deadline for running callbacks inline.
+"""
+
 VERSION: Final = 4
 """Version of this format; only contexts with equal versions can be linked."""
 
@@ -135,6 +140,9 @@ class Kind(enum.IntEnum):
 LAST_KIND: Final = max(Kind).value
 
 MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16  # for a message in the stream
+
+CALLS: Final = {int(kind) | MARK << 16: int(kind) for kind in (Kind.REQUEST, Kind.REPLY)}
+"""Requests and responses in the stream, by the same number of their headers."""
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
@@ -229,13 +237,20 @@ class FrameParser:
         self.held = 0
 
     def take_messages(
-        self, data: bytes, handlers: Mapping[bytes, Handler], inline_deadline_ns: int
+        self,
+        data: bytes,
+        handlers: Mapping[bytes, Handler],
+        handle_call: CallHandler,
+        inline_deadline_ns: int,
     ) -> bytes:
-        """Pass the messages at the start of the data to their handlers, and return the rest.
+        """Pass on the messages, requests and responses at the start of the data; return the rest.
 
         The rest starts with a frame of another kind, or an incomplete frame, and is for `feed`.
         Messages of publishers without a handler are skipped. No objects except payloads are
         created.
+
+        Raises:
+            FrameError: what `handle_call` raised.
         """
         if self._pieces:
             if len(data) < self.missing:
@@ -248,12 +263,19 @@ class FrameParser:
         while end - offset >= HEADER_SIZE:
             size, mark, sequence, source_ns, gid = MESSAGE_HEADER.unpack_from(data, offset)
             begin = offset + HEADER_SIZE
-            if mark != MESSAGE_MARK or end - begin < size:
+            if end - begin < size:
                 break
-            offset = begin + size
-            handler = handlers.get(gid)
-            if handler is not None:  # otherwise the subscription was just destroyed
-                handler(data[begin:offset], sequence, source_ns, inline_deadline_ns)
+            if mark == MESSAGE_MARK:
+                offset = begin + size
+                handler = handlers.get(gid)
+                if handler is not None:  # otherwise the subscription was just destroyed
+                    handler(data[begin:offset], sequence, source_ns, inline_deadline_ns)
+            elif mark in CALLS:
+                offset = begin + size
+                payload = data[begin:offset]
+                handle_call(CALLS[mark], sequence, source_ns, gid, payload, inline_deadline_ns)
+            else:
+                break
         return data[offset:]
 
     def feed(self, data: bytes) -> list[Frame]:

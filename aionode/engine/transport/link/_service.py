@@ -19,7 +19,6 @@ from aionode.graph import EndpointKind
 if TYPE_CHECKING:
     from aionode.engine.transport.base import Call, ReplyTo, Serve
     from aionode.engine.transport.link._connection import Connection
-    from aionode.engine.transport.link._protocol import Frame
     from aionode.engine.transport.link._registry import LinkRegistry
     from aionode.engine.wire.cdr import Data
     from aionode.graph import EndpointInfo
@@ -65,18 +64,22 @@ class LinkServer(Registration):
         self._registry = registry
 
     def take(
-        self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
+        self,
+        connection: Connection,
+        payload: Data,
+        sample_info: SampleInfo,
+        inline_deadline_ns: int,
     ) -> None:
         """Handle a request; a handler may run within this call until `inline_deadline_ns`."""
-        sample_info = SampleInfo(frame.gid, frame.sequence, frame.source_ns)
+        gid, sequence = sample_info.gid, sample_info.sequence
         try:
             message = cdr.decode(self.srv_type.Request, payload)
         except DecodeError as error:
             self._registry.drops.note(Drop.MALFORMED, self.endpoint.name, f"a request ({error})")
-            connection.send(Fail(frame.gid, frame.sequence, "DecodeError", str(error)))
+            connection.send(Fail(gid, sequence, "DecodeError", str(error)))
             return
         request = LinkRequest(message, sample_info, connection, self)
-        self.unanswered[sample_info.gid, sample_info.sequence] = request
+        self.unanswered[gid, sequence] = request
         self._serve(request, inline_deadline_ns)
 
     def cancel(self, gid: bytes, sequence: int) -> None:
@@ -282,7 +285,7 @@ class LinkCall:
     def _finish(self) -> bool:
         return self._requester.calls.pop(self._sequence, None) is not None
 
-    def replied(self, frame: Frame, payload: Data) -> None:
+    def replied(self, payload: Data, sample_info: SampleInfo) -> None:
         """Handle a response."""
         service = self._requester.endpoint.name
         try:
@@ -293,7 +296,7 @@ class LinkCall:
                 self._reply_to.fail(ServiceError(service, f"the response is unreadable: {error}"))
             return
         if self._finish():
-            self._reply_to.reply(response, SampleInfo(frame.gid, frame.sequence, frame.source_ns))
+            self._reply_to.reply(response, sample_info)
 
     def failed(self, error_type: str, error_text: str) -> None:
         """Handle a server's error."""

@@ -71,18 +71,27 @@ def test_messages_go_straight_to_their_handlers_in_the_order_of_all_frames(
         found.append(Frame(Kind.DATA, sequence, source_ns, gid, payload))
         assert deadline_ns == 7
 
+    def take_call(*call: Any) -> None:
+        found.append(Frame(*call[:-1]))
+        assert call[-1] == 7
+
     for piece in pieces_of(b"".join(packed(one) for one in frames), cuts):
-        rest = parser.take_messages(piece, {gid: take}, 7)
+        rest = parser.take_messages(piece, {gid: take}, take_call, 7)
         found += parser.feed(rest)
     assert found == frames
     assert parser.missing == protocol.HEADER_SIZE
+
+
+def no_call(*_: object) -> None:
+    """Take no requests or responses."""
+    raise AssertionError
 
 
 def test_messages_that_nothing_hears_are_left_out() -> None:
     """They were sent before the publisher's process learned that the subscription was destroyed."""
     data = packed(Frame(Kind.DATA, 1, 2, bytes(16), b"one"))
     parser = FrameParser()
-    assert parser.take_messages(data + data[:-1], {}, 0) == data[:-1]
+    assert parser.take_messages(data + data[:-1], {}, no_call, 0) == data[:-1]
 
 
 @given(ONE, st.data())
