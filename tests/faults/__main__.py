@@ -1,7 +1,7 @@
 """Runs the fault cases: ``python -m tests.faults --times 3 --write docs/reliability.md``.
 
-It prints the tables, writes them, and ends with status 1 if a promise was broken.
-``--only '^motion' --times 20 --write-motion docs/motion.md`` runs those in which a robot moves.
+Prints and writes the tables, and exits with status 1 if a promise was broken.
+``--only '^motion' --times 20 --write-motion docs/motion.md`` runs the cases of moving robots.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def main() -> None:
 def tell(
     cases: Sequence[Case], results: Mapping[str, list[Result]], options: argparse.Namespace
 ) -> int:
-    """Print the page, write it where it is wanted, and return how many promises are broken."""
+    """Print the page, write it if requested, and return how many promises are broken."""
     rows = [row(case, results[case.name]) for case in cases]
     page = PAGE.read_text(encoding="utf-8").format(
         **circumstances(options.jobs),
@@ -147,7 +147,7 @@ def tell(
 def tell_motion(
     cases: Sequence[Motion], results: Mapping[str, list[Any]], options: argparse.Namespace
 ) -> int:
-    """Do the same for the cases in which a robot moves."""
+    """Do the same for the cases of moving robots."""
     if cases:
         found = {each.name: (each, results[each.name]) for each in cases}
         publish(motion_page(found, **circumstances(options.jobs)), options.write_motion)
@@ -155,7 +155,7 @@ def tell_motion(
 
 
 def circumstances(jobs: int) -> dict[str, object]:
-    """Return what both pages say of this run."""
+    """Return the description of this run for both pages."""
     return {
         "together": jobs,
         "cores": os.cpu_count(),
@@ -166,7 +166,7 @@ def circumstances(jobs: int) -> dict[str, object]:
 
 
 def publish(page: str, path: Path | None) -> None:
-    """Print a page, and write it where it is wanted."""
+    """Print a page, and write it if requested."""
     print(page)  # noqa: T201 - a program
     if path is not None:
         path.write_text(page, encoding="utf-8")

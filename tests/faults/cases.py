@@ -1,4 +1,4 @@
-"""The cases: roles, a fault, and what is promised."""
+"""The fault cases: roles, a fault, and the promises."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ def on(way: str, *roles: Role) -> tuple[Role, ...]:
 
 
 def talk(*, keep_all: bool, period_s: float = 0.02, transient: bool = False) -> tuple[Role, ...]:
-    """Return a publisher, a reader to be hurt, and one beside it on a topic of its own.
+    """Return a publisher, a reader to be struck, and another reader with a topic of its own.
 
-    What waits for a reader that is frozen soon fills every buffer on the way to it.
+    Messages for a frozen reader soon fill every buffer on the way to it.
     """
     return (
         Role(
@@ -92,7 +92,7 @@ CROWD = 30
 
 
 def members(count: int, *, ros: int = 0, period_s: float = 0.05) -> tuple[Role, ...]:
-    """Return processes that all hear each other."""
+    """Return processes that all receive from each other."""
     return tuple(
         Role(
             f"{'ros' if number < ros else 'member'}{number}",
@@ -327,7 +327,7 @@ FULL_MEMORY = (
 
 
 class OwnMounts(contextlib.AbstractContextManager[None]):
-    """Nothing to set up, but the machine has to allow it."""
+    """Nothing to set up, but the machine must allow mounts."""
 
     def __enter__(self) -> None:
         done = subprocess.run([*FULL_MEMORY, "true"], capture_output=True, text=True, check=False)

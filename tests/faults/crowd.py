@@ -46,7 +46,7 @@ SIDE_BY_SIDE: Final = 2
 
 
 async def come_and_go(name: str, count: int, each_s: float) -> None:
-    """Make and end so many nodes, one after the other."""
+    """Create and destroy a number of nodes, one after another."""
     for number in range(count):
         async with Context() as context, Node(f"{name}_{number}", context=context) as node:
             publisher = node.create_publisher(String, "crowd", 10)
@@ -56,7 +56,7 @@ async def come_and_go(name: str, count: int, each_s: float) -> None:
 
 
 async def be_a_crowd(name: str, count: int, seconds: float) -> None:
-    """Make and end `count` nodes in `seconds`, some side by side."""
+    """Create and destroy `count` nodes within `seconds`, some at the same time."""
     each = -(-count // SIDE_BY_SIDE)
     async with asyncio.TaskGroup() as tasks:
         for number in range(SIDE_BY_SIDE):
@@ -64,7 +64,7 @@ async def be_a_crowd(name: str, count: int, seconds: float) -> None:
 
 
 def newcomer(port: int) -> None:
-    """Join at the router at a port, ask for all tokens, and leave.
+    """Connect to the router at a port, query all tokens, and disconnect.
 
     Raises:
         TimeoutError: the router does not answer.
@@ -83,9 +83,9 @@ def newcomer(port: int) -> None:
 
 
 def scheduled_ns(process: int) -> dict[str, tuple[int, int]]:
-    """Return how long each thread of a process has run, and waited for a processor, by its id.
+    """Return how long each thread of a process has run and waited for a processor, by its id.
 
-    Empty where the system does not tell.
+    Empty where the system does not report it.
     """
     found = {}
     for path in Path(f"/proc/{process}/task").glob("*/schedstat"):
@@ -96,16 +96,16 @@ def scheduled_ns(process: int) -> dict[str, tuple[int, int]]:
 
 
 class Scheduled:
-    """What the threads of a process do from now on."""
+    """Measures the threads of a process from now on."""
 
     def __init__(self, process: int) -> None:
         self._process = process
         self._before = scheduled_ns(process)
 
     def since_ns(self) -> tuple[int, int]:
-        """Return how long all threads have run, and how long one has waited at most.
+        """Return the total time that all threads have run, and the longest wait of one.
 
-        Threads wait at the same time, so the sum of that would be too much.
+        Threads wait at the same time, so the sum of their waits would be too much.
         """
         ran_ns, waits_ns = 0, [0]
         for thread, (ran, waited) in scheduled_ns(self._process).items():
@@ -119,8 +119,8 @@ class Answers:
     """How long a router took to answer newcomers.
 
     Attributes:
-        whole_s: All of the time, from the newcomer's first step on.
-        own_s: The same without waiting for a processor.
+        whole_s: The whole time, from the newcomer's first step on.
+        own_s: The same, without waits for a processor.
         ran_s: How long the router has run meanwhile.
     """
 
@@ -132,7 +132,7 @@ class Answers:
         self.ran_s: list[float] = []
 
     def ask(self) -> None:
-        """Let one newcomer ask."""
+        """Have one newcomer ask."""
         router, own = Scheduled(self.router), Scheduled(os.getpid())
         began_ns = time.perf_counter_ns()
         newcomer(self.port)
@@ -153,7 +153,7 @@ class Answers:
 
 
 def spread_text(times_s: list[float]) -> str:
-    """Return median, 99 % and longest of some times."""
+    """Return the median, the 99th percentile and the maximum of some times."""
     most_s = statistics.quantiles(times_s, n=100, method="inclusive")[98]
     values = (statistics.median(times_s), most_s, max(times_s))
     return "{:.1f}, {:.1f}, {:.1f} ms".format(*(1e3 * each for each in values))

@@ -1,4 +1,4 @@
-"""The faults that strike the processes of a case. Each fault returns when it is over."""
+"""The faults that strike the processes of a case. Each returns when it is over."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Fault = Callable[[Stage], Awaitable[None]]
 
 
 def wait(seconds: float) -> Fault:
-    """Let time pass: what happens is part of a role."""
+    """Wait: the fault is part of a role."""
 
     async def strike(stage: Stage) -> None:
         await asyncio.sleep(seconds)
@@ -34,7 +34,7 @@ def wait(seconds: float) -> Fault:
 
 
 def freeze(names: Iterable[str], seconds: float) -> Fault:
-    """Stop some processes for some time, as a debugger or a closed laptop does."""
+    """Suspend some processes for some time, like a debugger or a closed laptop."""
 
     async def strike(stage: Stage) -> None:
         for name in names:
@@ -47,7 +47,7 @@ def freeze(names: Iterable[str], seconds: float) -> Fault:
 
 
 def end_beside_frozen(name: str, frozen: Iterable[str], seconds: float) -> Fault:
-    """End a process with SIGTERM while others have been frozen for some time."""
+    """End a process with SIGTERM after others have been frozen for some time."""
 
     async def strike(stage: Stage) -> None:
         for each in frozen:
@@ -61,7 +61,7 @@ def end_beside_frozen(name: str, frozen: Iterable[str], seconds: float) -> Fault
 
 
 def freeze_idle(name: str, talker: str, seconds: float, *, idle_s: float) -> Fault:
-    """Stop a process that has everything, and let its publisher say nothing for a while."""
+    """Suspend a process that has received everything, while its publisher is idle."""
 
     async def strike(stage: Stage) -> None:
         stage.children[talker].tell("pause")
@@ -76,7 +76,7 @@ def freeze_idle(name: str, talker: str, seconds: float, *, idle_s: float) -> Fau
 
 
 def replace(name: str, *, after_s: float = 0.5, number: int = signal.SIGKILL) -> Fault:
-    """Kill a process, and start it anew a moment later; over when the new one runs."""
+    """Kill a process and restart it a moment later; over when the new one runs."""
 
     async def strike(stage: Stage) -> None:
         stage.children[name].send(number)
@@ -89,7 +89,7 @@ def replace(name: str, *, after_s: float = 0.5, number: int = signal.SIGKILL) ->
 
 
 def arrive(roles: Iterable[Role]) -> Fault:
-    """Start processes at the same moment; over when the node of the last one runs."""
+    """Start processes at the same time; over when the node of the last one runs."""
 
     async def strike(stage: Stage) -> None:
         for role in roles:
@@ -101,12 +101,12 @@ def arrive(roles: Iterable[Role]) -> Fault:
 
 
 def end_and_replace(name: str, times: int) -> Fault:
-    """End a process in good order and start it anew, several times."""
+    """End a process cleanly and restart it, several times."""
     return all_of(*[replace(name, after_s=0.0, number=signal.SIGTERM)] * times)
 
 
 def all_of(*faults: Fault) -> Fault:
-    """Let several faults strike one after the other."""
+    """Apply several faults, one after another."""
 
     async def strike(stage: Stage) -> None:
         for fault in faults:

@@ -1,7 +1,7 @@
-"""Runs fault cases: starts the processes, lets the fault strike, and counts.
+"""Runs fault cases: starts the processes, applies the fault, and counts.
 
-A `Case` is the roles of its processes, a fault, and what is promised. Whatever happens, no process
-of a case outlives it: each is the head of a process group that is killed in the end.
+A `Case` consists of the roles of its processes, a fault, and promises. Whatever happens, no process
+outlives its case: each leads a process group that is killed at the end.
 """
 
 from __future__ import annotations
@@ -84,27 +84,27 @@ CONTROL = Role("control", control=True)
 
 
 class Skipped(Exception):  # noqa: N818  # no error
-    """The machine cannot do this; the text says why."""
+    """The machine cannot run this case; the text says why."""
 
 
 class Outcome(msgspec.Struct):
-    """What came of one run of a case.
+    """The outcome of one run of a case.
 
     Attributes:
-        sent: Messages, once for each reader of theirs, and calls and goals.
+        sent: Number of messages, counted once per reader, and of calls and goals.
         lost: How many of them did not arrive, or ended with an error.
         kept_lost: How many messages of KEEP_ALL publishers are among these.
         healthy_lost: How many messages between processes that were not hurt are among these.
-        told: How many of those were told: counted by a publisher or subscription, or an error.
+        told: How many of those were reported: counted by a publisher or subscription, or an error.
         doubled: How many arrived twice.
-        hung: What did not work again, took longer than its time limit, or did not end.
+        hung: What did not recover, exceeded its time limit, or did not end.
         recovery_s: From the end of the fault until everything worked again.
-        gap_s: The longest time for which the loop of a process that was not hurt did not turn.
-        own_gap_s: The same without the time for which its threads waited for a core of the machine.
-        control_gap_s: As `gap_s`, of a process beside them that has no node.
-        control_own_gap_s: As `own_gap_s`, of that process: the machine itself stood still.
+        gap_s: The longest time for which the loop of a process that was not struck did not run.
+        own_gap_s: The same, without the time for which its threads waited for a core.
+        control_gap_s: Like `gap_s`, for a control process without a node.
+        control_own_gap_s: Like `own_gap_s`, for that process: the machine itself stood still.
         end_s: The longest that a process took to end after SIGTERM.
-        control_end_s: As `end_s`, of the process that has no node.
+        control_end_s: Like `end_s`, for the process without a node.
     """
 
     sent: int = 0
@@ -130,7 +130,7 @@ class Case(msgspec.Struct, frozen=True):
         name: What happens, for the table.
         roles: The processes.
         strike: The fault; returns when it is over.
-        hurt: Names of the processes whose own event loop the fault stops.
+        hurt: Names of the processes whose own event loop the fault blocks.
         loss: What may be lost: ``none`` of a KEEP_ALL publisher and only what is told of others,
             only what is ``told``, or ``any``, where readers that a publisher takes for gone miss
             what it says meanwhile.
@@ -160,7 +160,7 @@ class Case(msgspec.Struct, frozen=True):
     def broken(
         self, outcome: Outcome, gap_limit_s: float = GAP_LIMIT_S, end_limit_s: float = END_S
     ) -> list[str]:
-        """Return which promises an outcome breaks."""
+        """Return the promises that an outcome breaks."""
         untold = outcome.lost - outcome.told
         return [
             text
@@ -240,7 +240,7 @@ class Child:
         self._reports = reader
 
     def _open_output(self) -> int:
-        """Return a descriptor for what it writes."""
+        """Return a descriptor for its output."""
         match self.role.output:
             case "unread":
                 unread, output = os.pipe()
@@ -258,16 +258,16 @@ class Child:
         return output
 
     def _keep_output(self, terminal: int) -> None:
-        """Write to its file what it has written to its terminal."""
+        """Copy the output on its terminal to its file."""
         with contextlib.suppress(OSError), self._output.open("ab") as file:
             file.write(os.read(terminal, 1 << 16))
 
     def hang_up(self) -> None:
-        """Close its terminal, as the end of a connection does: it gets SIGHUP."""
+        """Close its terminal, as when a connection ends: it gets SIGHUP."""
         self._terminal.close()
 
     def core_waits(self) -> dict[str, float]:
-        """Return for how long each of its threads was ready to run, but had no core, in seconds."""
+        """Return how long each of its threads was ready to run without a core, in seconds."""
         waits: dict[str, float] = {}
         for stat in Path(f"/proc/{self.pid}/task").glob("*/schedstat"):
             with contextlib.suppress(OSError):  # the thread has just ended
@@ -275,16 +275,16 @@ class Child:
         return waits
 
     def core_wait_s(self, before: dict[str, float]) -> float:
-        """Return for how long it has waited for a core since then.
+        """Return how long it has waited for a core since then.
 
-        That is the time of its main thread, and the longest of the others, on which the main thread
+        The time of its main thread plus the longest of the others, for which the main thread
         may have waited.
         """
         waited = {name: s - before.get(name, 0.0) for name, s in self.core_waits().items()}
         return waited.pop(str(self.pid), 0.0) + max(waited.values(), default=0.0)
 
     async def read(self) -> None:
-        """Take its reports until it has ended."""
+        """Read its reports until it has ended."""
         while line := await self._reports.readline():
             report = msgspec.json.decode(line, type=Report)
             self.reports.append(report)
@@ -298,7 +298,7 @@ class Child:
 
     @property
     def started_s(self) -> float:
-        """When it had started, imports and first uses of its types included."""
+        """When it had started, including imports and the first use of its types."""
         return next((each.time_s for each in self.reports if each.ready), 0.0) + START_S
 
     @property
@@ -319,7 +319,7 @@ class Child:
         return self._process.pid
 
     def tell(self, word: str) -> None:
-        """Say something to it."""
+        """Send it a line."""
         if self._process is not None and self._process.stdin is not None and self.runs:
             with contextlib.suppress(ConnectionError):
                 self._process.stdin.write(f"{word}\n".encode())
@@ -330,7 +330,7 @@ class Child:
         return await self._process.wait()
 
     async def end(self) -> str | None:
-        """End it with SIGTERM; return what was wrong with that."""
+        """End it with SIGTERM; return what went wrong."""
         if not self.runs:
             status = await self.until_ended()
             return f"{self.role.name} had ended with status {status}" if status else None
@@ -355,21 +355,21 @@ class Child:
                 self._process.stdin.close()
 
     def close(self) -> None:
-        """Close what belongs to it here."""
+        """Close its pipes and files here."""
         self._terminal.close()
         self._closing.close()
 
     def whole_output(self) -> str:
-        """Return what it wrote."""
+        """Return its whole output."""
         return self._output.read_text(errors="replace") if self._output.exists() else ""
 
     def output(self) -> str:
-        """Return the end of what it wrote."""
+        """Return the end of its output."""
         return self.whole_output()[-2000:]
 
 
 def command_of(role: Role) -> Sequence[str]:
-    """Return the program of a role, and its arguments."""
+    """Return the command line for a role."""
     if role.command:
         return role.command
     text = msgspec.json.encode(role).decode()
@@ -383,7 +383,7 @@ def command_of(role: Role) -> Sequence[str]:
 
 
 def take_terminal() -> None:
-    """Make its standard output the terminal that controls this process; called in it."""
+    """Make standard output the controlling terminal; called in the child process."""
     fcntl.ioctl(1, termios.TIOCSCTTY, 0)
 
 
@@ -399,7 +399,7 @@ class Stage:
         self._folder = folder
 
     async def start(self, role: Role) -> None:
-        """Start a process, also in place of one that was there under its name."""
+        """Start a process, perhaps in place of an earlier one with its name."""
         if role.name in self.children:
             self.former.append(self.children[role.name])
         env = {key: value.format_map(self.env) for key, value in role.env.items()}
@@ -409,11 +409,11 @@ class Stage:
         self._tasks.create_task(child.read())
 
     def role(self, name: str) -> Role:
-        """Return the role of a process as its case has it."""
+        """Return the role of a process."""
         return next(role for role in self.case.roles if role.name == name)
 
     def expected(self) -> list[tuple[Child, str]]:
-        """Return the marks that have to come again and again: with whom, and which."""
+        """Return the marks that have to recur: with whom, and which."""
         living = [child for child in self.children.values() if child.runs]
         marks = [
             (child, hear_mark(hear.topic, sender.role.name))
@@ -429,7 +429,7 @@ class Stage:
         return marks + [(child, "goal") for child in living if child.role.send]
 
     def wrong_graphs(self) -> list[str]:
-        """Return which processes see other nodes than there are."""
+        """Return which processes see a wrong set of nodes."""
         nodes = [
             child
             for child in self.children.values()
@@ -446,7 +446,7 @@ class Stage:
         ]
 
     async def until_working(self, since_s: float, limit_s: float) -> list[str]:
-        """Wait until everything that began at `since_s` or later works; return what does not."""
+        """Wait until everything has worked since `since_s`; return what does not."""
         ends_s = time.monotonic() + limit_s
         while True:
             waiting = [
@@ -465,7 +465,7 @@ class Stage:
             await asyncio.sleep(0.02)
 
     async def until_arrived(self) -> None:
-        """Send no more, and wait until all that is under way has arrived, or nothing moves."""
+        """Stop sending, and wait until everything in transit has arrived, or nothing moves."""
         for child in self.children.values():
             child.tell("quiet")
         # A backlog that takes long to be over takes as long again to arrive, and then some.
@@ -486,11 +486,11 @@ class Stage:
         return {key: number for child in children for key, number in child.last.sent.items()}
 
     def lost(self, *, only_kept: bool = False, only_healthy: bool = False) -> int:
-        """Return how many messages are missing at readers that live.
+        """Return how many messages are missing at running readers.
 
         Args:
             only_kept: Count only those of KEEP_ALL publishers.
-            only_healthy: Count only those between processes that were not hurt.
+            only_healthy: Count only those between processes that were not struck.
         """
         sent = self.streams()
         counted = tuple(
@@ -510,7 +510,7 @@ class Stage:
         )
 
     def outcome(self, steady_s: float, quiet_s: float) -> Outcome:
-        """Return what is counted."""
+        """Return the outcome."""
         children = [*self.children.values(), *self.former]
         last = [child.last for child in children]
         calls = sum(report.calls for report in last)
@@ -555,7 +555,7 @@ class Stage:
 
 @contextlib.asynccontextmanager
 async def staged(case: Case) -> AsyncIterator[Stage]:
-    """Give a case its stage, and leave nothing behind."""
+    """Yield the stage of a case, and leave nothing behind."""
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         failure: Exception | None = None
         async with asyncio.TaskGroup() as tasks:
@@ -616,18 +616,18 @@ async def run_case(case: Case, busy: asyncio.Semaphore) -> Outcome:
 
 
 class Job(Protocol):
-    """What runs as one: a `Case`, or a scene of several."""
+    """A unit that runs at once: a `Case`, or a scene of several."""
 
     @property
     def lasts_s(self) -> float:
         """About how long its fault takes."""
 
     async def run(self, busy: asyncio.Semaphore) -> Sequence[tuple[Any, Any]]:
-        """Run, and return what came of each case of it."""
+        """Run, and return the outcome of each of its cases."""
 
 
 async def run_together(cases: Sequence[Job], jobs: int, tell: Callable[[Any, Any], None]) -> None:
-    """Run several cases side by side, once each, and tell what came of each as soon as it is over.
+    """Run several cases at the same time, once each, and report each as soon as it is over.
 
     Args:
         cases: The cases, those that take long first.

@@ -1,4 +1,4 @@
-"""Two hosts, as network namespaces with a cable between them, and what happens to the cable."""
+"""Two hosts as network namespaces, connected by a cable that can fail."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ def ip(*words: str) -> None:
 
 
 class TwoHosts:
-    """Two namespaces and a cable; made before the processes of a case, and removed after them.
+    """Two namespaces and a cable, created before the processes of a case and removed after them.
 
     Attributes:
-        names: Of the namespaces; each has the address of its place in `ADDRESSES`.
+        names: The names of the namespaces, in the order of `ADDRESSES`.
     """
 
     _numbers = itertools.count()
@@ -69,17 +69,17 @@ class TwoHosts:
             subprocess.run(["ip", "netns", "delete", name], capture_output=True, check=False)
 
     def within(self, host: int, role: Role) -> Role:
-        """Return a role as one on a host."""
+        """Return a role placed on a host."""
         env = {"AIONODE_LINK": "off", "AIONODE_ROUTER_PORT": str(PORT), **role.env}
         wrapper = ("ip", "netns", "exec", self.names[host])
         return msgspec.structs.replace(role, env=env, wrapper=wrapper)
 
     def placed(self, roles: Iterable[Role]) -> tuple[Role, ...]:
-        """Return roles as those on the hosts that their names end with."""
+        """Return roles placed on the hosts with which their names end."""
         return tuple(self.within(int(role.name.endswith("there")), role) for role in roles)
 
     def cut(self, seconds: float) -> Fault:
-        """Pull the cable out for some time, and let both hosts know."""
+        """Unplug the cable for some time, which both hosts notice."""
 
         async def strike(stage: Stage) -> None:
             ip("-n", self.names[0], "link", "set", self._devices[0], "down")
@@ -89,7 +89,7 @@ class TwoHosts:
         return strike
 
     def swallow(self, seconds: float) -> Fault:
-        """Lose everything for some time, as a radio link out of reach does: no host knows."""
+        """Lose all packets for some time, like a radio link out of range: no host notices."""
         ends = list(zip(self.names, self._devices, reversed(ADDRESSES), strict=True))
 
         async def strike(stage: Stage) -> None:
@@ -103,7 +103,7 @@ class TwoHosts:
         return strike
 
     def shape(self, seconds: float, *words: str) -> Fault:
-        """Let the cable be bad for some time: what `tc qdisc` says, on both of its ends."""
+        """Impair the cable for some time, by `tc qdisc` at both ends."""
 
         async def strike(stage: Stage) -> None:
             for verb in ("add", "delete"):
@@ -116,7 +116,7 @@ class TwoHosts:
 
 
 def member(name: str, **options: Any) -> Role:
-    """Return a process that hears all others of its kind."""
+    """Return a process that receives from all others of its kind."""
     return Role(
         name,
         publish=(Publish("/hello", period_s=0.05),),

@@ -1,4 +1,4 @@
-"""A program of a language model that drives by MCP: over the streams of a command, or HTTP."""
+"""A language model's client that drives by MCP: over a command's streams, or over HTTP."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ goal = "/**"
 
 
 def close_streams() -> None:
-    """Close this end of the pipes to the command, which tells it nothing but that."""
+    """Close this end of the pipes to the command, without a message."""
     (server,) = psutil.Process().children()
     pipes = set()
     for path in Path(f"/proc/{server.pid}/fd").iterdir():
@@ -48,10 +48,10 @@ def close_streams() -> None:
 
 
 class Assistant:
-    """Calls one tool after the other, as it is told on stdin.
+    """Calls tools as lines on stdin request.
 
-    A line ``move`` has it call the tool that moves; ``cancel`` has it give the call up, and
-    ``leave`` close the streams of the command without a word.
+    ``move`` calls the tool that moves, ``cancel`` cancels the call, and ``leave`` closes the
+    streams of the command without a message.
     """
 
     def __init__(self, mover: Mover, reporter: Reporter, address: str) -> None:
@@ -89,7 +89,7 @@ class Assistant:
             await client.call_tool(*self._call())
 
     def _call(self) -> tuple[str, dict[str, Any]]:
-        """Return the tool and its arguments: what moves has in it who has asked for it."""
+        """Return the tool and its arguments, which identify the process that asked."""
         seconds = self._mover.seconds
         if self._mover.asks == "goal":
             goal = {"order": os.getpid()}
@@ -99,7 +99,7 @@ class Assistant:
 
     @asynccontextmanager
     async def _client(self) -> AsyncIterator[Any]:
-        """Yield a client that is connected in the way of the mover."""
+        """Yield a client that is connected as the mover specifies."""
         _, transport, era = self._mover.way.split()
         mode: Any = "auto" if era == "new" else "legacy"
         async with AsyncExitStack() as stack:

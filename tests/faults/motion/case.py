@@ -1,4 +1,4 @@
-"""A case of motion: who moves the wheels, in which way it goes, and what is promised then."""
+"""A case of motion: who moves the wheels, how it goes away, and what is promised then."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ rules of a gateway for commands, the defaults that a type has in its definition.
 
 
 class Stopped(msgspec.Struct):
-    """What came of one run of a case.
+    """The outcome of one run of a case.
 
     Attributes:
-        raw_s: From the fault until the wheels were told to stop; infinite if they went on.
-        own_s: The same without the time for which the mover or the wheels waited for a core.
+        raw_s: Time from the fault until the wheels were told to stop; infinite if they went on.
+        own_s: The same, without the time for which the mover or the wheels waited for a core.
         late: How many commands moved them after they had stopped, while they were watched.
-        moved: How many moved them after the fault, while they were watched.
-        moved_s: From the fault until the last of these.
-        wrong: What else was wrong.
-        void: Why the run shows nothing, such as wheels that stood still before the fault; empty if
-            it does.
+        moved: How many commands moved them after the fault, while they were watched.
+        moved_s: Time from the fault until the last of these.
+        wrong: What else went wrong.
+        void: Why the run is inconclusive, such as wheels that stood still before the fault; empty
+            if it is not.
     """
 
     raw_s: float = math.inf
@@ -52,14 +52,14 @@ class Stopped(msgspec.Struct):
 
 
 class Place(msgspec.Struct, frozen=True):
-    """Where the cases of a scene are.
+    """Where the cases of a scene take place.
 
     Attributes:
-        name: Of the place; no two have the same.
+        name: The name of the place, which is unique.
         table: The title of the table that has its cases.
         column: The title of its column there.
-        within: Returns a role as one that is there.
-        roles: Processes that are there besides.
+        within: Returns a role placed there.
+        roles: Further processes there.
         around: What has to be there before its processes start, such as two hosts.
         together: Whether a fault strikes all movers of the place at once.
         wheels: What the wheels run: aionode, plain rclpy, or the stand-in for a ROS 2 node.
@@ -81,13 +81,13 @@ class Motion(msgspec.Struct, frozen=True):
     Attributes:
         place: Where the processes are; cases of one place have the process of wheels in common.
         who: Who moves the wheels, for the table.
-        goes: In which way it goes, for the table.
+        goes: How it goes away, for the table.
         stops: What stops the wheels, for the table.
         mover: The process that moves them.
         wheel: The wheels.
         strike: What happens to the mover.
         switches: Without any of these the promise breaks.
-        limit_s: After how long they stand still; None if nothing of aionode can stop them.
+        limit_s: After how long they stand still; None if nothing in aionode can stop them.
         allowed_s: How much longer that may take.
         returns: Whether the mover may move them again after the fault, with new commands, and
             another one may take over.
@@ -119,7 +119,7 @@ class Motion(msgspec.Struct, frozen=True):
 
     @property
     def name(self) -> str:
-        """What happens, in one line."""
+        """The case in one line."""
         off = f", without {self.off}" if self.off else ""
         return f"motion, {self.place.name}: {self.who} {self.goes}, {self.stops}{off}"
 
@@ -151,7 +151,7 @@ class Motion(msgspec.Struct, frozen=True):
         return found
 
     def without(self, switch: Switch) -> Motion:
-        """Return the same case with one of its mechanisms switched off."""
+        """Return the same case with one of its mechanisms disabled."""
         mover, wheel = self.mover.mover, self.wheel
         if mover is None and switch == "defaults":
             zero = "{tolerance: 0.0}" if wheel.action else "{for_sec: 0.0}"
@@ -199,7 +199,7 @@ def without_lease(mover: Mover) -> Mover:
 def stopped(
     motion: Motion, handed: Sequence[Handed], by: int, times_s: tuple[float, float, float]
 ) -> Stopped:
-    """Return how soon wheels stood still after a fault, and how much moved them later.
+    """Return how soon wheels stopped after a fault, and what moved them later.
 
     Args:
         motion: The case.

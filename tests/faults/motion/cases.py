@@ -1,4 +1,4 @@
-"""The cases of motion: who moves wheels, in which way it goes, and what stops them."""
+"""The cases of motion: who moves wheels, how it goes away, and what stops them."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
 
 
 def linked(way: str) -> Place:
-    """Return a place where messages travel in one way."""
+    """Return a place where messages travel by one transport."""
 
     def within(role: Role) -> Role:
         env = {"AIONODE_LINK": "on" if way == "link" else "off", **role.env}
@@ -100,7 +100,7 @@ def case(place: Place, who: str, goes: str, stops: str, **options: Any) -> Motio
 
 
 def leases(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the wheels of who holds a lease."""
+    """Yield the cases of movers that hold a lease."""
     promised: dict[str, Any] = {"wheel": TOPIC, "switches": ("lease",), "limit_s": TTL_S}
     lease = "a lease at the mover"
     for goes, strike in (("fails", run_into("fail")), *ENDINGS):
@@ -202,7 +202,7 @@ def leases(place: Place) -> Iterator[Motion]:
 
 
 def leases_and_silence(place: Place) -> Iterator[Motion]:
-    """Yield what happens where both sides are asked for a stop: nothing moves afterwards."""
+    """Yield the cases in which both sides provide a stop: nothing moves afterwards."""
     transient = {
         "mover": mover(transient=True),
         "wheel": Wheel("", silence_sec=SILENCE_S, transient=True),
@@ -239,7 +239,7 @@ def leases_and_silence(place: Place) -> Iterator[Motion]:
 
 
 def policies(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the wheels of a policy whose chunks an actor sends."""
+    """Yield the cases of a policy whose chunks are sent by an actor."""
     who, lease = "a policy with chunks of 0.5 s", "the lease of its actor, after its chunk"
     promised: dict[str, Any] = {"wheel": TOPIC, "switches": ("lease",), "limit_s": CHUNK_S + TTL_S}
     for goes, trouble, seconds in (
@@ -278,7 +278,7 @@ def policies(place: Place) -> Iterator[Motion]:
 
 
 def limits(place: Place) -> Iterator[Motion]:
-    """Yield what a lease alone cannot stop: a process that does nothing any more."""
+    """Yield the cases that a lease alone cannot stop: a process that no longer runs."""
     for goes, strike in DEATHS:
         yield case(
             place,
@@ -293,7 +293,7 @@ def limits(place: Place) -> Iterator[Motion]:
 
 
 def publishers(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the wheels of a plain publisher."""
+    """Yield the cases of a plain publisher."""
     cases: tuple[tuple[str, dict[str, Any]], ...] = (
         *((goes, {"strike": strike, "ends": True}) for goes, strike in DEATHS),
         ("fails", {"strike": run_into("fail"), "ends": True}),
@@ -323,7 +323,7 @@ def publishers(place: Place) -> Iterator[Motion]:
 
 
 def last_messages(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the wheels of a publisher whose ``finally`` stops them."""
+    """Yield the cases of a publisher whose ``finally`` sends a stop."""
     endings: tuple[tuple[str, Strike, Switch], ...] = (
         ("fails", run_into("fail"), "end"),
         ("gets SIGTERM", ENDINGS[0][1], "end"),
@@ -346,7 +346,7 @@ def last_messages(place: Place) -> Iterator[Motion]:
 
 
 def launches(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the wheels of a publisher that a launch file has started."""
+    """Yield the cases of a publisher started by a launch file."""
     for goes, strike in (
         ("has its guardian killed", guardian_killed),
         ("is killed", killed),
@@ -367,7 +367,7 @@ def launches(place: Place) -> Iterator[Motion]:
 
 
 def goals(place: Place) -> Iterator[Motion]:
-    """Yield what happens to the goal of a client."""
+    """Yield the cases of an action client."""
     lost: tuple[tuple[str, dict[str, Any]], ...] = (
         *((goes, {"strike": strike, "ends": True}) for goes, strike in DEATHS),
         *((goes, {"strike": strike, "lasts_s": 5.0}) for goes, strike in BLOCKS),
@@ -427,7 +427,7 @@ def goals(place: Place) -> Iterator[Motion]:
 
 
 def cables() -> Iterator[Motion]:
-    """Yield what happens to the wheels of a robot when its operator is out of reach."""
+    """Yield the cases of a robot whose operator is out of reach."""
     for seconds in (5, 14, 70):
         for verb, text in (("cut", "is cut off for"), ("swallow", "is out of reach for")):
             hosts = TwoHosts()
@@ -493,7 +493,7 @@ GOAL_WAYS: tuple[Way, ...] = ("rosbridge", "http")
 
 
 def gateways() -> Iterator[Motion]:
-    """Yield what happens to the wheels that clients of a gateway move."""
+    """Yield the cases of clients of a gateway."""
 
     def place(name: str, *roles: Role) -> Place:
         return Place(name, "Through a gateway", "longest", roles=(GATEWAY, *roles))
@@ -566,7 +566,7 @@ CEILING_S = 4.0
 
 
 def assistants() -> Iterator[Motion]:
-    """Yield what happens to the wheels that a model's program moves by MCP."""
+    """Yield the cases of a language model's client that moves by MCP."""
     place = Place("assistants", "By an assistant", "longest", roles=(ASSISTANTS,))
     ways: tuple[Way, ...] = ("mcp stdio new", "mcp stdio old", "mcp http new", "mcp http old")
     for way in ways:
@@ -602,7 +602,7 @@ def assistants() -> Iterator[Motion]:
 
 
 def assistant_out_of_reach(who: str, drives: Role, common: dict[str, Any]) -> Motion:
-    """Return what happens to wheels on one host when the assistant on the other is cut off."""
+    """Return the case of an assistant on another host that is cut off."""
     hosts = TwoHosts()
     place = Place(
         f"cut, {who}", "By an assistant", "longest", partial(beyond, hosts),
@@ -619,10 +619,10 @@ INTERFACES = Path(__file__).with_name("interfaces")
 
 
 def defaults() -> Iterator[Motion]:
-    """Yield what happens to the wheels of who sends the defaults of a definition.
+    """Yield the cases of movers that send the defaults of a definition.
 
-    Only the wheels have the definition: the others know the type by what a node describes. With
-    zeros in place of its defaults nothing ends the motion.
+    Only the wheels have the definition: the others know the type from a node's description. With
+    zeros in place of the defaults, nothing would end the motion.
     """
 
     def within(role: Role) -> Role:
@@ -665,7 +665,7 @@ def defaults() -> Iterator[Motion]:
 
 
 def beyond(hosts: TwoHosts, role: Role) -> Role:
-    """Return a role on the robot if it is wheels, else on the other host, which names the robot."""
+    """Return a role placed on the robot if it has wheels, else on the other host."""
     if role.wheels:
         return hosts.within(0, role)
     return hosts.within(1, msgspec.structs.replace(role, env={**NAMING, **role.env}))

@@ -1,7 +1,7 @@
-"""A gateway, and a page that drives through it: who has no node of its own.
+"""A gateway, and a page without a node of its own that drives through it.
 
-``python -m tests.faults.motion.gateway`` is the gateway. It writes its port into a file, as each
-run has a gateway of its own.
+``python -m tests.faults.motion.gateway`` is the gateway. It writes its port to a file, since each
+run has its own gateway.
 """
 
 from __future__ import annotations
@@ -85,8 +85,7 @@ async def serve() -> None:
 class Page:
     """A page or program that drives.
 
-    A line ``move`` on stdin has it begin, ``quiet`` has it let go, and with ``nan`` it computes NaN
-    from then on.
+    Lines on stdin control it: ``move`` starts, ``quiet`` lets go, and ``nan`` has it compute NaN.
     """
 
     def __init__(self, mover: Mover, reporter: Reporter, port: int) -> None:
@@ -113,7 +112,7 @@ class Page:
                 asyncio.get_running_loop().remove_reader(sys.stdin)
 
     async def run(self) -> None:
-        """Drive by its way in until cancelled."""
+        """Drive through the gateway until cancelled."""
         await self._moves.wait()
         ways: dict[str, Callable[[], Awaitable[None]]] = {
             "rosbridge": self._rosbridge,
@@ -124,7 +123,7 @@ class Page:
         await ways[self._mover.way]()
 
     def _values(self) -> dict[str, Any]:
-        """Return a command in JSON: a page writes null for a NaN."""
+        """Return a command as JSON: a page writes null for NaN."""
         if self._mover.has_defaults:
             return {"by": os.getpid()} | ({"for_sec": 0.0} if self._mover.sends_zeros else {})
         twist = command()
@@ -192,7 +191,7 @@ class Page:
 
 
 async def drain(app: ClientConnection) -> None:
-    """Read what a client has no use for."""
+    """Read and discard what a client does not need."""
     async for _ in app:
         pass
 

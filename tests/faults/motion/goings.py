@@ -1,4 +1,4 @@
-"""In which ways a mover goes. Each function strikes, and returns when the fault is over."""
+"""The ways in which a mover goes away. Each function returns when its fault is over."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ async def killed(play: Play) -> None:
 
 
 async def guardian_killed(play: Play) -> None:
-    """Kill the guardian of the system that it is, which would stop its processes without it."""
+    """Kill the guardian of its system, which would stop its processes if the supervisor died."""
     children = psutil.Process(play.child.pid).children()
     (guardian,) = (each for each in children if "_guardian.py" in " ".join(each.cmdline()))
     play.struck()
@@ -49,7 +49,7 @@ async def guardian_killed(play: Play) -> None:
 
 
 def frozen(seconds: float, number: int = signal.SIGSTOP) -> Strike:
-    """Stop it for some time: as a debugger does, or as Ctrl-Z does with SIGTSTP."""
+    """Suspend it for some time, like a debugger, or like Ctrl-Z with SIGTSTP."""
 
     async def strike(play: Play) -> None:
         play.struck()
@@ -74,7 +74,7 @@ def signalled(*numbers: int, apart_s: float = 0.0) -> Strike:
 
 
 def interrupted_twice(trouble: str = "", *, judged: int = 1) -> Strike:
-    """Let a person press Ctrl-C, and again when it does not end.
+    """Press Ctrl-C, and again when it does not end.
 
     Args:
         trouble: What it has run into before.
@@ -95,7 +95,7 @@ def interrupted_twice(trouble: str = "", *, judged: int = 1) -> Strike:
 
 
 def run_into(trouble: str, seconds: float = 0.0) -> Strike:
-    """Let it run into trouble; see `tests.faults.motion.mover`."""
+    """Cause trouble for it; see `tests.faults.motion.mover`."""
 
     async def strike(play: Play) -> None:
         play.struck()
@@ -112,7 +112,7 @@ async def hung_up(play: Play) -> None:
 
 
 def at_once(fault: Fault) -> Strike:
-    """Let a fault strike all movers of a place at once, such as one of the cable between hosts."""
+    """Apply a fault to all movers of a place at once, such as a fault of the cable."""
     ends: dict[Stage, asyncio.Event] = {}  # on another stage, what shows nothing begins anew
 
     async def strike(play: Play) -> None:
@@ -129,14 +129,14 @@ def at_once(fault: Fault) -> Strike:
 
 
 async def browser_leaves(play: Play) -> None:
-    """Let its browser go, without a word."""
+    """Disconnect its browser without a message."""
     assert play.browser is not None
     play.struck()
     play.browser.transport.abort()
 
 
 async def drives_into_standstill(play: Play) -> None:
-    """Let it let go, and drive again for 2 s of 3 in which its gateway stands still."""
+    """Have it let go, and drive again for 2 s while its gateway is frozen for 3 s."""
     gateway = play.stage.children["gateway"]
     play.struck()
     play.child.tell("quiet")
@@ -150,7 +150,7 @@ async def drives_into_standstill(play: Play) -> None:
 
 
 async def killed_beside_another(play: Play) -> None:
-    """Have another program of the same identity want to drive as well, and kill it then."""
+    """Have another program of the same identity try to drive as well, and then kill it."""
     play.stage.children["rival"].tell("move")
     await asyncio.sleep(1.0)
     play.struck()
@@ -158,12 +158,12 @@ async def killed_beside_another(play: Play) -> None:
 
 
 async def leaves(play: Play) -> None:
-    """Have it close its connection, as at its end."""
+    """Have it close its connection as at its end."""
     play.struck()
     play.child.tell("leave")
 
 
 async def comes_near(play: Play) -> None:
-    """Let the target of the wheels be near."""
+    """Move the target of the wheels close to them."""
     play.struck()
     play.wheels.tell("near")

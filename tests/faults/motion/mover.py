@@ -1,6 +1,6 @@
-"""The program of a process that asks for motion: ``python -m tests.faults.motion.mover ROLE``.
+"""The program of a process that commands motion: ``python -m tests.faults.motion.mover ROLE``.
 
-A line ``move`` on stdin has it begin, or begin again; each other line is a trouble for it:
+A line ``move`` on stdin makes it start, or start again; each other line causes trouble:
 ``fail``, ``exit``, ``sleep SECONDS`` and ``compute SECONDS``; of a policy, see
 `tests.faults.motion.policy`.
 """
@@ -33,7 +33,7 @@ __all__: list[str] = []
 
 
 class MoverNode(Node):
-    """The node of a mover, with the publisher or the client that it moves by."""
+    """The node of a mover, with the publisher or client with which it commands."""
 
     def __init__(self, role: Role, reporter: Reporter, context: Context) -> None:
         super().__init__(
@@ -60,7 +60,7 @@ class MoverNode(Node):
     # Troubles
 
     def obey(self) -> None:
-        """Begin, or run into the trouble that a line of stdin names, in a callback of the node."""
+        """Start, or cause the trouble that a line of stdin names, in a callback of the node."""
         word, _, seconds = sys.stdin.readline().strip().partition(" ")
         troubles: dict[str, Callable[[], None]] = {
             "fail": fail,
@@ -80,12 +80,12 @@ class MoverNode(Node):
     # Motion
 
     async def move_when_told(self) -> None:
-        """Ask for motion from the line on stdin until cancelled."""
+        """Command motion after the line on stdin, until cancelled."""
         await self.begin.wait()
         await self.move()
 
     async def move(self) -> None:
-        """Ask for motion until cancelled."""
+        """Command motion until cancelled."""
         match self.mover.asks:
             case "lease":
                 await self.hold_leases()
@@ -113,7 +113,7 @@ class MoverNode(Node):
             await asyncio.sleep(self.mover.period_s)
 
     async def hold_leases(self) -> None:
-        """Publish commands under a lease; where it expires, under another one if told to."""
+        """Publish commands under a lease; if it expires, under another one on request."""
         assert self.publisher is not None
         await self.publisher.wait_for_subscribers()
         while True:
@@ -128,7 +128,7 @@ class MoverNode(Node):
                 await asyncio.sleep(self.mover.period_s)
 
     async def publish_under(self, lease: CommandLease[Twist]) -> None:
-        """Publish commands until cancelled, and some more."""
+        """Publish commands until cancelled, and a few more."""
         try:
             while True:
                 lease.publish(command())
@@ -140,7 +140,7 @@ class MoverNode(Node):
                 await asyncio.sleep(self.mover.period_s)
 
     async def send_goals(self) -> None:
-        """Send a goal and wait for its end; then another one if told to."""
+        """Send a goal and wait for its end; then another one on request."""
         assert self.client is not None
         await self.client.wait_for_server()
         while True:
@@ -157,7 +157,7 @@ def fail() -> None:
 
 
 def once(callback: Callable[[], Any]) -> Callable[[], Any]:
-    """Return a callback that does something when it is called first."""
+    """Return a callback that runs an action on its first call."""
     left = [callback]
     return lambda: left.pop()() if left else None
 
@@ -211,7 +211,7 @@ def old_signals() -> None:
 
 
 def main() -> None:
-    """Move until told otherwise."""
+    """Move until stopped."""
     role = msgspec.json.decode(sys.argv[1], type=Role)
     assert role.mover is not None
     if role.mover.old_signals:

@@ -24,11 +24,11 @@ CHUNK = 10
 
 
 class Policy:
-    """A policy, and the troubles that it runs into.
+    """A policy, and the trouble that it can run into.
 
     Args:
-        node: The node that it moves by, and that shows what it sees.
-        mover: What is to be known of it.
+        node: The node with which it moves and observes.
+        mover: Its description.
     """
 
     def __init__(self, node: Node, mover: Mover) -> None:
@@ -64,7 +64,7 @@ class Policy:
 
     @property
     def troubles(self) -> dict[str, Callable[[float], None]]:
-        """What it may run into, by the word for it; each takes seconds."""
+        """Functions that cause trouble for some seconds, by keyword."""
         return {
             "hang": lambda seconds: self._run_into(lambda: threading.Event().wait(seconds)),
             "think": lambda seconds: self._run_into(lambda: compute(seconds)),

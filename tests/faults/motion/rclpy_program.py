@@ -1,6 +1,6 @@
-"""Movers and wheels as a program of plain rclpy: over aionode's, or over a real ROS 2.
+"""Movers and wheels as a plain rclpy program, for aionode's rclpy or a real ROS 2.
 
-``rclpy_program.py ROLE``; each line on stdin is a trouble, as for `tests.faults.motion.mover`.
+``rclpy_program.py ROLE``; lines on stdin cause trouble, as for `tests.faults.motion.mover`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ REPORT_S = 0.1
 
 
 class Program:
-    """The node of such a program, and what it reports."""
+    """The node of such a program, and its reports."""
 
     def __init__(self, role: Role, node: Any) -> None:
         self.node = node
@@ -48,7 +48,7 @@ class Program:
     # Reports and troubles
 
     def tell(self) -> None:
-        """Report what was handed since the last time."""
+        """Report what the wheels were given since the last time."""
         with self.telling:
             handed, self.handed = self.handed, []
             report = Report(time_s=time.monotonic(), ready=True, handed=handed)
@@ -61,20 +61,20 @@ class Program:
             time.sleep(REPORT_S)
 
     def note(self, topic: str, what: What, by: int = 0, sent_s: float = 0.0) -> None:
-        """Note what wheels were handed."""
+        """Record what the wheels were given."""
         with self.telling:
             self.handed.append(Handed(topic, what, time.monotonic(), by, sent_s))
         if what != "move":
             self.tell()
 
     def obey(self) -> None:
-        """Take troubles."""
+        """Read lines that cause trouble."""
         for line in sys.stdin:
             word, _, seconds = line.strip().partition(" ")
             self.troubles.append((word, float(seconds or 0.0)))
 
     def run_into_trouble(self) -> None:
-        """Do in a callback what stdin has named."""
+        """Cause, in a callback, the trouble named on stdin."""
         if not self.troubles:
             return
         word, seconds = self.troubles.pop()

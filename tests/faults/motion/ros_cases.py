@@ -1,4 +1,4 @@
-"""The cases of motion beside ROS 2: what the side of aionode can stop, and what it cannot."""
+"""The cases of motion with ROS 2: what aionode's side can stop, and what it cannot."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SERVER = Wheel("", action=True, lost_sec=LOST_S)
 
 
 class RosPython(contextlib.AbstractContextManager[None]):
-    """Nothing to set up, but there has to be an rclpy."""
+    """Nothing to set up, but rclpy must be installed."""
 
     path = os.environ.get(PYTHON_VARIABLE, sys.executable)
 
@@ -63,7 +63,7 @@ domains = itertools.cycle(set(range(1, 101)) - {42})
 
 
 def over_dds(wheels: Literal["aionode", "rclpy"]) -> Place:
-    """Return a place where everything talks over DDS, in a domain of its own."""
+    """Return a place where everything communicates over DDS, in a domain of its own."""
     env = {
         "AIONODE_TRANSPORT": "rcl",
         "ROS_DOMAIN_ID": str(next(domains)),
@@ -102,13 +102,13 @@ ENDS: tuple[tuple[str, Strike, float], ...] = (
 
 
 def freezes(*seconds: int) -> Iterator[tuple[str, Strike, float]]:
-    """Yield how a process is frozen."""
+    """Yield the ways of freezing a process."""
     for each in seconds:
         yield f"is frozen {each} s", frozen(each), each
 
 
 def publishers(place: Place, who: str, mover: Role, *ways: Any) -> Iterator[Motion]:
-    """Yield what ``on_silence`` does against a plain publisher of ROS 2."""
+    """Yield the cases of ``on_silence`` with a plain publisher of ROS 2."""
     for goes, strike, lasts_s in ways:
         yield Motion(
             place,
@@ -155,7 +155,7 @@ def clients(place: Place, who: str, mover: Role, lease_s: float, *ways: Any) -> 
 
 
 def leases(place: Place, column: str) -> Iterator[Motion]:
-    """Yield what a lease does for wheels of ROS 2."""
+    """Yield the cases of a lease that commands wheels of ROS 2."""
     ways: tuple[tuple[str, Strike, float, float | None], ...] = (
         ("fails", run_into("fail"), 0.0, TTL_S),
         ("gets SIGTERM", signalled(signal.SIGTERM), 0.0, TTL_S),
@@ -185,7 +185,7 @@ def leases(place: Place, column: str) -> Iterator[Motion]:
 
 
 def ros_motions() -> Iterator[Motion]:
-    """Yield every case beside ROS 2, and those of aionode's rclpy."""
+    """Yield every case with ROS 2, and those of aionode's rclpy."""
     publisher, client = Mover("", asks="publisher"), Mover("", asks="goal")
     rclpy = Role("", mover=publisher, rclpy=True), Role("", mover=client, rclpy=True)
     ros = Role("", mover=publisher, ros=True), Role("", mover=client, ros=True)

@@ -30,7 +30,7 @@ ASK_S = 2.0
 
 
 def commander(stand_in: StandIn, mover: Mover) -> Callable[[], None]:
-    """Return what publishes one command."""
+    """Return a function that publishes one command."""
     publisher = stand_in.session.declare_publisher(stand_in.key(mover.topic, Twist))
     gid = gid_of(stand_in.endpoint(EndpointKind.PUBLISHER, mover.topic, 10, Twist))
     sequence = 0

@@ -1,7 +1,7 @@
-"""Runs cases of motion: several at once, whose wheels are one process, each mover one of its own.
+"""Runs several cases of motion at once: one process has all wheels, each mover has its own.
 
-No fault is the business of the wheels, so that each case goes as it would alone; and starting
-processes is what takes most of the time of such cases.
+Faults do not affect the wheels, so each case runs as it would alone; and such cases spend most of
+their time starting processes.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Play:
         stage: The processes.
         browser: The connection to the web server of the mover, if it has one.
         stood: Set when the wheels stand still, or did not in time.
-        never: Why they never moved at all; empty if they did.
+        never: Why they never moved; empty if they did.
     """
 
     def __init__(self, motion: Motion, stage: Stage, watch_s: float) -> None:
@@ -90,7 +90,7 @@ class Play:
         return self.stage.children["wheels"]
 
     def handed(self, name: str = "wheels") -> list[Handed]:
-        """Return what wheels were handed so far."""
+        """Return what the wheels were given so far."""
         return self.stage.children[name].handed.get(self.motion.wheel.topic, [])
 
     def moved_by(self, name: str) -> bool:
@@ -100,19 +100,19 @@ class Play:
         return any(each.what == "move" and each.by == by for each in self.handed())
 
     def stops_since(self, since_s: float) -> int:
-        """Return how often the wheels were to stop since then."""
+        """Return how often the wheels were told to stop since then."""
         newest = itertools.takewhile(lambda each: each.time_s > since_s, reversed(self.handed()))
         return sum(each.what != "move" for each in newest)
 
     @property
     def movers(self) -> list[Role]:
-        """What moves the wheels."""
+        """The movers of the wheels."""
         return [role for role in (self.motion.mover, self.motion.beside) if role is not None]
 
     async def until_moving(self) -> None:
-        """Have the wheels move, and wait until they do without a stop; if not, that is noted.
+        """Start the wheels, and wait until they move without a stop; record it if they do not.
 
-        On a machine that is just starting many processes, a mover may be silent for too long.
+        While a machine starts many processes, a mover may be silent for too long.
         """
         self.never = "never moved"
         with contextlib.suppress(TimeoutError):
@@ -130,7 +130,7 @@ class Play:
             )
 
     async def _moves(self) -> bool:
-        """Tell the movers to move; return whether they then do so for some time."""
+        """Tell the movers to move; return whether they do so for some time."""
         for role in self.movers:
             if not self.moved_by(role.name) or self.stops_since(self._told_s):
                 self.stage.children[role.name].tell("move")
@@ -141,7 +141,7 @@ class Play:
         return moved and lately and not self.stops_since(self._told_s)
 
     async def browse(self) -> None:
-        """Ask the web server of the mover for what moves, if it has one."""
+        """Request the mover's route from its web server, if it has one."""
         mover = self.motion.mover.mover
         if mover is None or mover.program != "uvicorn":
             return
@@ -152,13 +152,13 @@ class Play:
         self.browser.write(f"GET /{mover.route} HTTP/1.1\r\nHost: robot\r\n\r\n".encode())
 
     def struck(self) -> None:
-        """Note that the fault strikes now."""
+        """Record that the fault begins now."""
         self._by = 0 if self.child.role.command else self.child.pid
         self._waits = [(child, child.core_waits()) for child in (self.child, self.wheels)]
         self._struck_s = time.monotonic()
 
     async def run(self) -> None:
-        """Let the fault strike, and watch the wheels until some time after it is over."""
+        """Apply the fault, and watch the wheels until some time after it is over."""
         if self.never:
             self.stood.set()
             return
@@ -169,7 +169,7 @@ class Play:
             await asyncio.sleep(self._watch_s)
 
     async def _until_stopped(self) -> None:
-        """Wait until the wheels stand still, and note for how long there was no core till then."""
+        """Wait until the wheels stand still, and record the time without a core until then."""
         limit_s = (self.motion.limit_s or 0.0) + STANDS_S
         while not self._stands() and time.monotonic() < self._struck_s + limit_s:  # noqa: ASYNC110
             await asyncio.sleep(POLL_S)
@@ -182,7 +182,7 @@ class Play:
         return self.stops_since(self._struck_s) > 0
 
     def judge(self) -> Stopped:
-        """Return what came of it."""
+        """Return its outcome."""
         if self.never:
             return Stopped(void=self.never)
         until_s = self._over_s + self._watch_s
@@ -200,7 +200,7 @@ class Play:
 
 
 class Scene:
-    """Cases that run side by side, and have the process of their wheels in common.
+    """Cases that run at the same time and share the process of their wheels.
 
     Args:
         motions: The cases, all of one place.
@@ -265,14 +265,14 @@ class Scene:
         raise AssertionError("not reached")
 
     async def _run_one(self, play: Play, number: int) -> None:
-        """Let the fault of a case strike, which is that of all cases where it strikes together."""
+        """Apply the fault of a case, or the one that all cases share."""
         if not self._place.together:
             await asyncio.sleep(number * APART_S)
             await play.until_moving()
         await play.run()
 
     async def _start(self, stage: Stage, plays: Iterable[Play]) -> None:
-        """Start everything, and wait until it runs; what ends is noted later."""
+        """Start everything, and wait until it runs; processes that end are noted later."""
         for role in self._place.roles:
             await stage.start(role)
         wheels = tuple(play.motion.wheel for play in plays)
@@ -290,7 +290,7 @@ class Scene:
         await self._until_ready(stage)
 
     async def _until_ready(self, stage: Stage) -> None:
-        """Wait until what has started is ready, as far as it says so."""
+        """Wait until the started processes are ready, as far as they report it."""
         ends_s = time.monotonic() + READY_LIMIT_S
         for child in stage.children.values():
             while not child.last.ready and self._may_come(child) and time.monotonic() < ends_s:  # noqa: ASYNC110
@@ -304,7 +304,7 @@ class Scene:
         await stage.start(self._place.within(role))
 
     async def _join_late(self, stage: Stage, plays: Iterable[Play]) -> None:
-        """Let other wheels join when those that are there stand still."""
+        """Have other wheels join when the present ones stand still."""
         for play in plays:
             await play.stood.wait()
         await asyncio.sleep(LATE_S)
@@ -313,7 +313,7 @@ class Scene:
     async def _move_again(
         self, stage: Stage, plays: Sequence[Play], outcomes: Sequence[Stopped]
     ) -> None:
-        """Let the next mover come, and note whose wheels do not obey it."""
+        """Start the next mover, and record whose wheels do not obey it."""
         wheels = tuple(play.motion.wheel for play in plays)
         await self._add(stage, Role("next", moves=wheels))
         ends_s = time.monotonic() + AGAIN_S
@@ -346,7 +346,7 @@ def numbered(motion: Motion, number: int) -> Motion:
 
 
 def scenes(motions: Iterable[Motion], watch_s: float = WATCH_S) -> Iterator[Scene]:
-    """Yield the scenes of cases: those of one place that last about as long."""
+    """Yield the scenes of cases: those of one place that take about as long."""
     places: dict[str, list[Motion]] = {}
     for motion in motions:
         places.setdefault(motion.place.name, []).append(motion)

@@ -1,4 +1,4 @@
-"""The page of motion: who moves wheels, in which way it goes, what stops them, and how soon."""
+"""The page of motion: who moves wheels, how it goes away, what stops them, and how soon."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Result = Stopped | Exception
 
 
 def problems(motion: Motion, result: Result) -> list[str]:
-    """Return which promises one run has broken; or that it has kept them without a mechanism."""
+    """Return the promises that one run broke, or that it kept them without a mechanism."""
     if isinstance(result, Skipped):
         return []
     if isinstance(result, Exception):
@@ -30,7 +30,7 @@ def problems(motion: Motion, result: Result) -> list[str]:
 
 
 def line_of(motion: Motion, result: Result) -> str:
-    """Return what came of one run, in one line."""
+    """Return the outcome of one run in one line."""
     verdict = "; ".join(problems(motion, result)) or ("broken" if motion.off else "kept")
     if isinstance(result, Skipped):
         verdict = f"skipped: {result}"
@@ -49,8 +49,8 @@ def motion_page(found: Mapping[str, tuple[Motion, Sequence[Result]]], **figures:
     """Return the page.
 
     Args:
-        found: The cases by their names, and what came of them.
-        figures: What the head of the page says besides.
+        found: The cases by name, with their outcomes.
+        figures: Further text for the head of the page.
     """
     tables = []
     columns: dict[str, list[tuple[Motion, Sequence[Result]]]] = {}
@@ -103,5 +103,5 @@ def cells(
 
 
 def seconds_of(values_s: Iterable[float]) -> str:
-    """Return the longest of some times, for the table; nothing if there is none."""
+    """Return the longest of some times for the table; empty if there is none."""
     return seconds(max(values, default=0.0)) if (values := list(values_s)) else ""

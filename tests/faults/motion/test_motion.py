@@ -1,7 +1,7 @@
-"""A short part of the cases of motion, and what judges them.
+"""A few of the cases of motion, and how they are judged.
 
-Each runs as it is, and once more for each of its mechanisms with that switched off: a case that
-does not break then would show nothing. All run side by side, since they mostly wait.
+Each runs as it is, and once for each of its mechanisms with that disabled: a case that does not
+break then would show nothing. All run at the same time, since they mostly wait.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ SWITCHED_OFF = {
 
 @cache
 def results() -> dict[int, Stopped | Exception]:
-    """Return what came of each short case, with its mechanisms and without, by its identity."""
+    """Return the outcome of each short case, with and without its mechanisms, by its identity."""
     found: dict[int, Stopped | Exception] = {}
 
     def take(motion: Motion, result: Stopped | Exception) -> None:
@@ -48,7 +48,7 @@ def results() -> dict[int, Stopped | Exception]:
 
 
 def outcome_of(motion: Motion) -> Stopped:
-    """Return what came of a short case."""
+    """Return the outcome of a short case."""
     result = results()[id(motion)]
     if isinstance(result, Exception):
         raise result
@@ -58,14 +58,14 @@ def outcome_of(motion: Motion) -> Stopped:
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("motion", SHORT.values(), ids=SHORT)
 def test_motion_ends_with_whoever_asked_for_it(motion: Motion) -> None:
-    """The wheels stand still in time, and nothing moves them until somebody asks anew."""
+    """The wheels stop in time, and nothing moves them until there is a new request."""
     assert motion.broken(outcome_of(motion), SPARE_S) == []
 
 
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("motion", SWITCHED_OFF.values(), ids=SWITCHED_OFF)
 def test_a_case_breaks_without_its_mechanism(motion: Motion) -> None:
-    """Otherwise something else has stopped the wheels, and the case shows nothing."""
+    """Otherwise something else stopped the wheels, and the case shows nothing."""
     assert problems(motion, outcome_of(motion)) == []
 
 
@@ -87,7 +87,7 @@ def test_names_of_cases_are_unique() -> None:
 
 
 def case(**options: Any) -> Motion:
-    """Return a case, promised to stop within 0.5 s."""
+    """Return a case with the promise to stop within 0.5 s."""
     role = Role("mover", mover=Mover("/wheels"))
     place = Place("link", "On one host", "link")
     wheel = Wheel("/wheels")
@@ -95,12 +95,12 @@ def case(**options: Any) -> Motion:
 
 
 def handed(*events: tuple[float, What], by: int = 7) -> list[Handed]:
-    """Return what wheels were handed, a moment after it was sent."""
+    """Return what wheels were given, a moment after it was sent."""
     return [Handed("/wheels", what, time_s, by, time_s - 0.01) for time_s, what in events]
 
 
 def judged(motion: Motion, events: list[Handed]) -> tuple[list[str], Stopped]:
-    """Return what was broken, by a fault at 10 s, watched until 20 s."""
+    """Return the broken promises, for a fault at 10 s, watched until 20 s."""
     outcome = stopped(motion, events, 7, (9.0, 10.0, 20.0))
     return motion.broken(outcome), outcome
 
@@ -109,7 +109,7 @@ BEFORE: tuple[tuple[float, What], ...] = ((9.5, "move"), (9.9, "move"))
 
 
 def test_a_stop_in_time_keeps_the_promise() -> None:
-    """It counts from the fault, whatever moved the wheels until then."""
+    """The time counts from the fault, whatever moved the wheels before."""
     broken, outcome = judged(case(), handed(*BEFORE, (10.1, "move"), (10.4, "stop")))
 
     assert broken == []
@@ -128,7 +128,7 @@ def test_a_stop_in_time_keeps_the_promise() -> None:
     ids=["late", "never", "moved again", "before", "still"],
 )
 def test_what_breaks_the_promise_is_said(events: list[Handed], text: str) -> None:
-    """Also a case that did not show anything, as the wheels stood still before."""
+    """Even for an inconclusive case, whose wheels stood still before the fault."""
     assert text in judged(case(), events)[0]
 
 
@@ -138,7 +138,7 @@ def test_who_moves_after_the_watch_does_no_harm() -> None:
 
 
 def test_a_plain_publisher_may_go_on_with_new_commands_alone() -> None:
-    """It holds nothing that could have ended; but what it sent before the stop is late."""
+    """It has no lease that could have ended, but commands from before the stop are late."""
     events = handed(*BEFORE, (10.2, "silence"), (15.0, "move"))
     old = Handed("/wheels", "move", 15.0, 7, 9.9)
 
@@ -147,7 +147,7 @@ def test_a_plain_publisher_may_go_on_with_new_commands_alone() -> None:
 
 
 def test_beside_another_mover_only_the_own_commands_count() -> None:
-    """The wheels never stand still then."""
+    """The wheels never stand still in this case."""
     motion = case(beside=Role("other", mover=Mover("/wheels")))
     other = handed((9.0, "move"), (10.4, "move"), (19.0, "move"), by=8)
 
@@ -165,7 +165,7 @@ def test_where_nothing_can_stop_the_wheels_a_stop_is_no_limit() -> None:
 
 
 def test_the_page_has_a_column_for_each_way_and_the_longest_time() -> None:
-    """Each row is one way to go, however messages travel."""
+    """Each row is one way of going away, whatever the transport."""
     motion = case(switches=("lease",))
     results = [Stopped(0.3, 0.25), Stopped(0.4, 0.31)]
     page = motion_page(

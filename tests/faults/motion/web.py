@@ -1,4 +1,4 @@
-"""A mover that moves in a route of FastAPI, for as long as its browser is there."""
+"""A mover that moves in a FastAPI route while its browser is connected."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The process of a fault case that is the wheels of robots."""
+"""The process of a fault case that has the wheels of robots."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ FAR, NEAR = 1.0, 0.03
 
 
 def own(kind: str, name: str) -> Any:
-    """Return a type of the package that only wheels and who moves them have."""
+    """Return a type of the package that only wheels and their movers have."""
     return getattr(importlib.import_module(f"aionode.interfaces.minibot_interfaces.{kind}"), name)
 
 
 def profile(each: Mover | Wheel) -> QoSProfile:
-    """Return the profile of commands; of those that are kept, only the last one counts."""
+    """Return the profile of commands; of kept ones, only the last counts."""
     if each.transient:
         return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return QoSProfile(depth=10)
 
 
 def command() -> Twist:
-    """Return a command to move, which says who sent it, and when."""
+    """Return a command to move, with its sender and time."""
     return Twist(linear=Vector3(x=1.0, y=time.monotonic()), angular=Vector3(x=float(os.getpid())))
 
 
@@ -64,8 +64,8 @@ class Wheels:
 
     Args:
         node: Its node.
-        report: Where what they are handed is noted.
-        tell: Called when they are to stop, so that the harness learns at once.
+        report: Records what they are given.
+        tell: Called when they are told to stop, so that the harness learns of it at once.
 
     Attributes:
         distance: How far their target is.
@@ -78,7 +78,7 @@ class Wheels:
         self._tell = tell
 
     def attach(self, wheel: Wheel) -> None:
-        """Let a wheel obey."""
+        """Make a wheel obey."""
         if wheel.has_defaults:
             (self._approach if wheel.action else self._drive)(wheel.topic)
         else:

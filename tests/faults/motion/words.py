@@ -1,8 +1,8 @@
-"""What moves a robot in a fault case, what its wheels do, and what they are handed.
+"""The movers and wheels of fault cases, and records of what wheels were given.
 
-A `Mover` asks for motion, a `Wheel` obeys; both are part of a `Role`. Each command says when it was
-sent and by which process, and what a wheel is handed goes to the harness as `Handed`, with the time
-of the monotonic clock, which all processes of a host have in common.
+A `Mover` commands motion, a `Wheel` obeys; both are part of a `Role`. Each command says when and by
+which process it was sent. What a wheel is given goes to the harness as `Handed`, with a time of the
+monotonic clock, which all processes of a host share.
 """
 
 from __future__ import annotations
