@@ -1,6 +1,6 @@
 """Runs the attacks: ``python -m tests.attacks --write docs/security.md``.
 
-It prints the table, puts it into the page, and ends with status 1 if one was not held.
+Prints the table, writes it into the page, and exits with status 1 if an attack succeeded.
 ``--only REGEX`` runs some of them.
 """
 
@@ -33,7 +33,7 @@ Result = Found | BaseException
 
 
 def line_of(attack: Attack, result: Result) -> str:
-    """Return the line of an attack."""
+    """Return the table's line of an attack."""
     cells: tuple[object, ...]
     if isinstance(result, Found):
         before, most = result.memory_before_bytes, result.memory_most_bytes
@@ -53,7 +53,7 @@ def line_of(attack: Attack, result: Result) -> str:
 
 
 def without_zenoh(found: Found) -> str:
-    """Return what the limit of memory is compared with, if it is kept without Zenoh's part only."""
+    """Return the figure compared with the memory limit, if it is kept only without Zenoh's part."""
     if found.memory_most_bytes <= MEMORY_LIMIT * found.memory_before_bytes or not found.bare_bytes:
         return ""
     return (
@@ -63,7 +63,7 @@ def without_zenoh(found: Found) -> str:
 
 
 def said(lines: list[str]) -> str:
-    """Return the first of some log lines, and how many more there are."""
+    """Return the first of some log lines, and the number of further ones."""
     if not lines:
         return ""
     text = re.sub(r"^\[\w+\] (\[[^]]*\]:? )*", "", lines[0]).replace("`", "'")
@@ -73,7 +73,7 @@ def said(lines: list[str]) -> str:
 
 
 def table(lines: list[str]) -> str:
-    """Return what is put into the page."""
+    """Return the table for the page."""
     return "\n".join(
         (
             BEGIN,
@@ -118,7 +118,7 @@ def main() -> None:
 
 
 def is_broken(result: Result) -> bool:
-    """Return whether an attack was not held."""
+    """Return whether an attack succeeded."""
     return bool(result.broken()) if isinstance(result, Found) else not isinstance(result, Skipped)
 
 

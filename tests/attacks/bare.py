@@ -1,8 +1,8 @@
-"""A Zenoh session without aionode beside an attack: what the attack does to Zenoh itself.
+"""A Zenoh session without aionode during an attack, to see its effect on Zenoh itself.
 
-``python -m tests.attacks.bare SECONDS`` publishes 100 messages a second, watches all liveliness
-tokens with a function of no effect, as anything does that has a graph, and prints ``begun``, and at
-its end the longest ``put`` in ms, how much memory it had, and how much at most since, in bytes.
+``python -m tests.attacks.bare SECONDS`` publishes 100 messages a second, and subscribes to all
+liveliness tokens without processing them, as any program with a graph does. It prints ``begun``;
+and at its end the longest ``put`` in ms, its memory at the start, and its peak since, in bytes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ WARM_UP_S = 0.5
 
 
 def memory() -> int:
-    """Return the most memory that this process has taken, in bytes."""
+    """Return the peak memory of this process, in bytes."""
     with open("/proc/self/status", encoding="ascii") as lines:  # noqa: PTH123  # as short
         return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
 

@@ -1,4 +1,4 @@
-"""The attacks: who, what, and beside which processes."""
+"""The attacks: by whom, how, and against which processes."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ __all__ = ["all_attacks"]
 
 
 def pair(link: str = "off", env: dict[str, str] | None = None, **talker: Any) -> tuple[Role, ...]:
-    """Return two nodes with true messages in both directions, 100 in each second.
+    """Return two nodes with legitimate messages in both directions, 100 per second.
 
     Args:
-        link: Whether they are linked, or talk over Zenoh.
-        env: Variables of their environment, in place of that one.
-        talker: What the first node does besides.
+        link: Whether they are linked, or communicate over Zenoh.
+        env: Their environment variables, in place of the one for that.
+        talker: What else the first node does.
     """
     env = {"AIONODE_LINK": link} if env is None else env
     publish = (Publish("/chatter", period_s=0.01), *talker.pop("publish", ()))
@@ -34,12 +34,12 @@ def pair(link: str = "off", env: dict[str, str] | None = None, **talker: Any) ->
 
 
 def clouds(**options: Any) -> tuple[Publish, ...]:
-    """Return a publisher of messages of 10 kB that none of the true nodes hears."""
+    """Return a publisher of messages of 10 kB that no legitimate node receives."""
     return (Publish("/clouds", period_s=0.02, size=10_000, readers=0, **options),)
 
 
 def kept() -> tuple[Publish, ...]:
-    """Return a publisher that keeps 10 MB for late readers, of which the true nodes are none."""
+    """Return a publisher that keeps 10 MB for late readers; no legitimate node is one."""
     return (Publish("/kept", depth=200, transient=True, period_s=0.01, size=50_000, readers=0),)
 
 
@@ -48,7 +48,7 @@ LISTS = (("node", "list"), ("topic", "list", "-t"), ("topic", "info", "-v", "/ch
 
 
 def all_attacks() -> list[Attack]:
-    """Return all attacks, each with what it needs around it."""
+    """Return all attacks, each with the environment that it needs."""
     rules = AccessControl()
     return [
         Attack("none: what the table compares with", "nobody", "wait", pair()),
@@ -167,7 +167,7 @@ def all_attacks() -> list[Attack]:
 
 
 def attacks_on_gateway() -> list[Attack]:
-    """Return what clients do to a gateway in the process of the first node."""
+    """Return the attacks of clients on a gateway in the process of the first node."""
     tries = {
         "guess_tokens": ("tries tokens as fast as they are judged, at a gateway", "outsider"),
         "keep_waiting": ("500 connections to a gateway that send a byte at a time", "outsider"),
@@ -197,6 +197,6 @@ def attacks_on_gateway() -> list[Attack]:
 
 
 def worker(role: Role) -> Role:
-    """Return a role with a callback besides that keeps its loop for most of the time."""
+    """Return a role with an additional callback that keeps its loop busy most of the time."""
     hear = (*role.hear, Hear("/work", depth=10_000, block_s=0.1))
     return msgspec.structs.replace(role, hear=hear)

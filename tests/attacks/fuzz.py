@@ -1,9 +1,9 @@
-"""Tells a node well-formed lies beside a true peer: ``python -m tests.attacks.fuzz --seconds 60``.
+"""Sends well-formed lies to a node with a true peer: ``python -m tests.attacks.fuzz --seconds 60``.
 
-The node has to stay alive, hear its true peer, and keep its loop and its memory level. Rounds of
-ten seconds at most follow each other, each with new processes, one kind of lies and a seed;
-``--seed N --kinds tokens`` repeats one. ``--planted submessages`` puts a defect back that aionode
-once had, which has to be found.
+The node has to stay alive and receive from its true peer, with a responsive loop and constant
+memory. Each round takes at most ten seconds and has new processes, one kind of lie and a seed;
+``--seed N --kinds tokens`` repeats one. ``--planted submessages`` restores a former defect of
+aionode, which has to be found.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ STANDS_S = 0.5
 
 
 def victims(planted: tuple[str, ...]) -> tuple[Role, ...]:
-    """Return a node to be lied to, which does all that lies are about, and its true peer."""
+    """Return a target node, which does everything that lies are about, and its true peer."""
     talker, listener = pair(publish=clouds(), parameter_size=1000, curious=True)
     if not planted:
         return talker, listener
@@ -43,7 +43,7 @@ def victims(planted: tuple[str, ...]) -> tuple[Role, ...]:
 
 
 def with_defects(role: Role, planted: tuple[str, ...]) -> Role:
-    """Return a role whose process has some defects: lies strike the one, the other, or both."""
+    """Return a role whose process has some planted defects."""
     words = ("-m", "tests.attacks.planted", *planted, msgspec.json.encode(role).decode())
     return msgspec.structs.replace(role, command=words)
 
@@ -51,7 +51,7 @@ def with_defects(role: Role, planted: tuple[str, ...]) -> Role:
 def one_round(
     seed: int, kinds: list[str], planted: tuple[str, ...], seconds: float
 ) -> list[str] | None:
-    """Lie for some time; return what was wrong, or None if a busy machine let nothing begin."""
+    """Lie for some time; return what went wrong, or None if a busy machine started nothing."""
     attack = Attack(
         f"lies with seed {seed}",
         "member",
@@ -73,13 +73,13 @@ def one_round(
 def fuzz(
     seconds: float, kinds: list[str], planted: tuple[str, ...] = (), seed: int | None = None
 ) -> str:
-    """Run rounds of each kind in turn; return what was found, empty if nothing was.
+    """Run rounds of each kind in turn; return the defects found.
 
     Args:
-        seconds: For how long it lies in all.
-        kinds: Which lies: names of `LIES`.
-        planted: Which defects the node has: names of `DEFECTS`.
-        seed: That of each round; by default each has one of its own.
+        seconds: The total duration.
+        kinds: The kinds of lies: names in `LIES`.
+        planted: The planted defects: names in `DEFECTS`.
+        seed: The seed of each round; by default each has its own.
     """
     round_s = min(max(seconds / len(kinds), SHORTEST_S), ROUND_S)
     for number, kind in enumerate(cycle(kinds)):

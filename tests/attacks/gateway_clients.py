@@ -1,7 +1,7 @@
-"""What clients of a gateway do to it: programs of attackers that need no session.
+"""Attacks of clients on a gateway, which need no Zenoh session.
 
-Each is called with the seconds that it lasts, and the ids of the processes of the nodes, one of
-which has a gateway; it returns how often it tried.
+Each is called with its duration in seconds and the process ids of the nodes, one of which has a
+gateway; it returns the number of attempts.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def begun() -> None:
 
 
 def gateway_of(pids: Sequence[int]) -> tuple[int, int]:
-    """Return the process and the port of the gateway: that which says by HTTP that it is well."""
+    """Return the process and port of the gateway: the one whose health check answers."""
     for pid in pids:
         for each in psutil.Process(pid).net_connections(kind="tcp"):
             if each.status != psutil.CONN_LISTEN:
@@ -87,7 +87,7 @@ def websocket(port: int) -> socket.socket:
 
 
 def bombs() -> Iterator[bytes]:
-    """Yield values in JSON that are made to cost, in one frame each."""
+    """Yield JSON values that are expensive to process, in one frame each."""
     for values in itertools.cycle(
         (
             '{"poses":[' + "{}," * (SIZE // 3) + "{}]}",
@@ -104,7 +104,7 @@ def bombs() -> Iterator[bytes]:
 
 
 def send_bombs(port: int, until: float) -> int:
-    """Send bombs over WebSockets and HTTP by turns, as soon as the one before is taken."""
+    """Send bombs over WebSockets and HTTP in turns, each once the previous one was accepted."""
     tries = 0
     for values in bombs():
         if time.monotonic() > until:
@@ -125,7 +125,7 @@ def send_bombs(port: int, until: float) -> int:
 
 
 def send_tiny_parts(port: int, until: float) -> int:
-    """Send pings, empty frames, empty parts and chunks of one byte, as fast as they are taken."""
+    """Send pings, empty frames, empty parts and one-byte chunks, as fast as they are accepted."""
     kinds = (
         (UPGRADE, frame(b"", PING) * 10_000),
         (UPGRADE, frame(b"") * 10_000),
@@ -173,7 +173,7 @@ def keep_waiting(port: int, until: float) -> int:
 
 
 def read_nothing(port: int, until: float) -> int:
-    """Subscribe, ask for much, and read nothing of it, with 20 clients."""
+    """Subscribe and request a lot with 20 clients, and read nothing."""
     asking = frame(b'{"op":"subscribe","topic":"/chatter"}')
     asking += frame(b'{"op":"call_service","service":"/rosapi/topics_and_raw_types"}') * 200
     clients = [websocket(port) for _ in range(20)]
@@ -188,7 +188,7 @@ def read_nothing(port: int, until: float) -> int:
 
 
 def guess_tokens(port: int, until: float) -> int:
-    """Try tokens, as fast as they are judged."""
+    """Try tokens as fast as they are checked."""
     tries = 0
     while time.monotonic() < until:
         with suppress(OSError), socket.create_connection(("127.0.0.1", port), 2.0) as client:
@@ -204,7 +204,7 @@ def guess_tokens(port: int, until: float) -> int:
 
 
 def drive_twice(port: int, until: float) -> int:
-    """Drive over two connections of one identity; both together may not be obeyed.
+    """Drive over two connections of one identity, which must not both be obeyed.
 
     Raises:
         RuntimeError: both were obeyed.
@@ -237,10 +237,10 @@ LISTENS_S = 4.0
 
 
 def drive_late(port: int, until: float) -> int:
-    """Have the gateway refuse so much that what is behind it waits, and put commands there.
+    """Make the gateway refuse so much that later frames wait, and send commands behind it.
 
     Raises:
-        RuntimeError: an old one of them has reached the wheels.
+        RuntimeError: an old command reached the wheels.
     """
     url = f"ws://127.0.0.1:{port}"
     tries = 0
@@ -263,10 +263,10 @@ def drive_late(port: int, until: float) -> int:
 
 
 def drive_frozen(seconds: float, pids: Sequence[int]) -> int:
-    """Stop the gateway again and again for 0.8 s, and drive only in the first half of that.
+    """Suspend the gateway repeatedly for 0.8 s, and drive only in the first half of that.
 
     Raises:
-        RuntimeError: a command has reached the wheels afterwards.
+        RuntimeError: a command reached the wheels afterwards.
     """
     pid, port = gateway_of(pids)
     begun()
@@ -294,10 +294,10 @@ def drive_frozen(seconds: float, pids: Sequence[int]) -> int:
 
 
 def take_all_places(port: int, until: float) -> int:
-    """Keep as many WebSockets, streams and requests that wait as one identity gets.
+    """Keep as many WebSockets, streams and pending requests open as one identity may.
 
     Raises:
-        RuntimeError: a client of another identity has no place.
+        RuntimeError: a client of another identity is refused.
     """
     kept: list[socket.socket] = []
     stream = (
@@ -328,10 +328,10 @@ def take_all_places(port: int, until: float) -> int:
 
 
 def load_images(port: int, until: float) -> int:
-    """Be a page of another origin, whose images have wrong tokens in their addresses.
+    """Act as a page of another origin, whose images have wrong tokens in their addresses.
 
     Raises:
-        RuntimeError: the operator's own token counts no more.
+        RuntimeError: the operator's own token is refused.
     """
     headers = ({"Origin": "http://evil.example"}, {"Sec-Fetch-Site": "cross-site"},
                {"User-Agent": "Mozilla/5.0"}, {"Host": "evil.example"})  # fmt: skip
@@ -349,10 +349,10 @@ def load_images(port: int, until: float) -> int:
 
 
 def read_hidden(port: int, until: float) -> int:
-    """Ask for a parameter that the policy hides, by each service that tells of one.
+    """Ask for a parameter that the policy hides, by each service that reveals parameters.
 
     Raises:
-        RuntimeError: one of them has told it.
+        RuntimeError: one of them revealed it.
     """
     tries = 0
     headers = {"Content-Type": "application/json", "Authorization": "Bearer viewer"}
@@ -372,7 +372,7 @@ def read_hidden(port: int, until: float) -> int:
 
 
 def check_client(port: int, token: str) -> None:
-    """Ask something as the client with a token.
+    """Send a request as the client with a token.
 
     Raises:
         RuntimeError: it is refused.

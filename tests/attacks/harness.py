@@ -1,7 +1,7 @@
-"""Runs attacks beside true traffic: the harness of the fault cases, and how an attack is judged.
+"""Runs attacks during legitimate traffic, in the harness of the fault cases, and judges them.
 
-The attacker is one more process of the case. What it takes from its victims is measured beside
-their reports: memory from outside, and what they log.
+The attacker is another process of the case. Besides the victims' own reports, their memory is
+measured from outside, and their logs are read.
 """
 
 from __future__ import annotations
@@ -64,17 +64,17 @@ CONFIGS = ROOT / "examples" / "security"
 
 
 class Found(msgspec.Struct):
-    """What came of one attack.
+    """The outcome of one attack.
 
     Attributes:
-        outcome: What the processes report.
-        tries: How often the attacker tried.
-        memory_before_bytes: The memory of the victim that grew most, before the attack.
-        memory_most_bytes: The most that it took since.
-        bare: What a session without aionode beside them went through, in words.
-        bare_bytes: How much memory the attack took from it; 0 if there is none.
+        outcome: The reports of the processes.
+        tries: The number of attempts.
+        memory_before_bytes: The memory, before the attack, of the victim that grew most.
+        memory_most_bytes: Its peak since.
+        bare: How a session without aionode fared, in words.
+        bare_bytes: How much that session grew by the attack; 0 if there is none.
         said: The lines that the victims logged since.
-        problems: What else was wrong, such as a forged message that was heard.
+        problems: What else went wrong, such as a forged message that was received.
     """
 
     outcome: Outcome
@@ -88,13 +88,13 @@ class Found(msgspec.Struct):
 
     @property
     def own_growth(self) -> float:
-        """How many times the memory it took at most, without what Zenoh takes by itself."""
+        """The factor by which its memory grew, without Zenoh's own growth."""
         return (self.memory_most_bytes - self.bare_bytes) / self.memory_before_bytes
 
     def broken(
         self, gap_limit_s: float = GAP_LIMIT_S, memory_limit: float = MEMORY_LIMIT
     ) -> list[str]:
-        """Return why it was not held; nothing if it was."""
+        """Return why the attack succeeded; empty if it was repelled."""
         outcome = self.outcome
         untold = outcome.lost - outcome.told
         grown = self.memory_most_bytes / self.memory_before_bytes
@@ -114,7 +114,7 @@ class Found(msgspec.Struct):
 
 
 class Attack(msgspec.Struct, frozen=True):
-    """An attack, and the processes that it strikes.
+    """An attack and its victims.
 
     Attributes:
         name: What happens, for the table.
@@ -123,15 +123,15 @@ class Attack(msgspec.Struct, frozen=True):
         program: The attacker: a name of `programs.PROGRAMS`.
         roles: The victims, and who talks with them.
         seconds: How long it lasts.
-        item: What of the promises of docs/security.md it tries.
+        item: The promise of docs/security.md that it tests.
         commands: Arguments of ``aionode``, run beside it; they end, and print no control character.
-        longer_s: How much longer than without it they may take.
+        longer_s: How much longer than without the attack they may take.
         replaced: A victim that ends and is replaced meanwhile.
-        bare: Whether a Zenoh session without aionode is beside them, to compare with.
+        bare: Whether there is a Zenoh session without aionode for comparison.
         short: Whether it is part of the ordinary tests.
-        around: What has to be there before its processes start.
-        env: Variables of the attacker's environment.
-        hurt: The victims whose own loops it stops.
+        around: What has to exist before its processes start.
+        env: The attacker's environment variables.
+        hurt: The victims whose own loops it blocks.
     """
 
     name: str
@@ -173,7 +173,7 @@ class Strike:
         self.found = Found(Outcome())
 
     async def __call__(self, stage: Stage) -> None:
-        """Attack, and measure."""
+        """Attack and measure."""
         attack = self._attack
         victims = [child for child in stage.children.values() if not child.role.control]
         before_s = [await self._command(stage, command) for command in attack.commands]
@@ -219,7 +219,7 @@ class Strike:
                 )
 
     async def _run_commands(self, stage: Stage, before_s: Sequence[float]) -> None:
-        """Run the commands beside the attack; each may take some longer than without it."""
+        """Run the commands during the attack; each may take somewhat longer than without it."""
         attack = self._attack
         await asyncio.sleep(SETTLE_S * bool(attack.commands))
         for command, alone_s in zip(attack.commands, before_s, strict=True):
@@ -230,7 +230,7 @@ class Strike:
                 )
 
     async def _begin(self, stage: Stage, role: Role) -> Child:
-        """Start a process that attacks, or is beside the attack."""
+        """Start the attacker, or the session for comparison."""
         await stage.start(role)
         child = stage.children[role.name]
         async with asyncio.timeout(BEGIN_LIMIT_S):
@@ -244,7 +244,7 @@ class Strike:
         return Role("attacker", command=words, env=attack.env)
 
     def _judge(self, name: str, output: str) -> None:
-        """Note what a process has logged."""
+        """Record what a process has logged."""
         self.found.said += LOG_LINE.findall(output)
         if found := CONTROLS.search(output):
             self.found.problems.append(f"{name} printed {found[0]!r}")
@@ -288,12 +288,12 @@ def memory_of(pid: int) -> int:
 
 
 def peak_of(pid: int) -> int:
-    """Return how much it took at most since `reset_peak`, in bytes."""
+    """Return its peak memory since `reset_peak`, in bytes."""
     return status_of(pid, "VmHWM")
 
 
 def reset_peak(pid: int) -> None:
-    """Forget how much memory a process took at most."""
+    """Reset the peak memory of a process."""
     with contextlib.suppress(OSError):  # a container may forbid it; then that is since its start
         Path(f"/proc/{pid}/clear_refs").write_text("5", encoding="ascii")
 
@@ -302,8 +302,8 @@ class AccessControl:
     """A router with the rules of the how-to, and a visitor that may publish /scan.
 
     Attributes:
-        robot: Variables of the environment of the robot's nodes.
-        visitor: Variables of that of a visitor.
+        robot: The environment variables of the robot's nodes.
+        visitor: Those of a visitor.
     """
 
     def __init__(self) -> None:

@@ -1,7 +1,6 @@
-"""A plain Zenoh session that says what no program of aionode would: the tools of an attacker.
+"""The tools of an attacker: a plain Zenoh session that sends what no aionode program would.
 
-It shares keys and encodings with aionode, and nothing else: whatever it sends, any program on the
-bus can send.
+It shares only keys and encodings with aionode: any program on the network can send the same.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ GRAPH_S = 5.0
 
 
 def pace(seconds: float, per_s: float) -> Iterator[int]:
-    """Yield numbers from 0 on for some time, so many in each second."""
+    """Yield numbers from 0 on for some time, at a rate per second."""
     began_s, number = time.monotonic(), 0
     while (now_s := time.monotonic()) < began_s + seconds:
         due_s = began_s + number / per_s
@@ -50,7 +49,7 @@ def pace(seconds: float, per_s: float) -> Iterator[int]:
 
 @contextmanager
 def lying() -> Iterator[Liar]:
-    """A liar with a session: a member of the domain, or what its certificate lets it be."""
+    """A liar with a session: a member of the domain, or whatever its certificate allows."""
     with ExitStack() as stack:
         path = os.environ.get("ZENOH_SESSION_CONFIG_URI")
         if path:
@@ -80,7 +79,7 @@ class Liar:
     # What others announce
 
     def endpoints(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the endpoints of this kind and name of others; waits for the first one.
+        """Return the endpoints of others with this kind and name; wait for the first one.
 
         Raises:
             LookupError: there is none.
@@ -105,7 +104,7 @@ class Liar:
         raise LookupError(f"{kind.name} {name}: no node announces it")
 
     def known(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the same as it was when this was first asked for."""
+        """Return the endpoints as they were at the first call."""
         found = self._known.get((kind, name))
         if found is None:
             found = self._known[kind, name] = self.endpoints(kind, name)
@@ -142,7 +141,7 @@ class Liar:
         """Return the token of another endpoint of its own.
 
         Args:
-            kind: What it is.
+            kind: Its kind.
             name: Of the topic or service.
             interface: Its class, or the name of a type that has none.
             qos: The profile.
@@ -196,25 +195,25 @@ class Liar:
         last: int,
         rest: bytes = b"",
     ) -> None:
-        """Send one in the name of a writer to a reader of it, or for an ACKNACK the reverse."""
+        """Send a submessage as a writer to its reader, or an ACKNACK as the reader."""
         key = self.submessage_key(kind, writer, reader)
         self.put(key, acknack.pack(kind, writer.gid, reader.gid, first, last, rest))
 
     def submessage_key(
         self, kind: SubmessageKind, writer: EndpointInfo, reader: EndpointInfo
     ) -> str:
-        """Return the key on which a writer or reader of a topic would send one."""
+        """Return the key on which a writer or reader of a topic would send submessages."""
         key = data_key(self.domain, writer.name, writer.type_name, writer.type_hash)
         if kind is SubmessageKind.ACKNACK:
             return submessage_key(key, Side.SUBSCRIPTIONS, writer.node.participant)
         return submessage_key(key, Side.PUBLISHERS, reader.node.participant)
 
     def post(self, reader: EndpointInfo, batch: bytes) -> None:
-        """Send frames to a context, as what a link could not deliver."""
+        """Send frames to a context as if a link had failed to deliver them."""
         self.put(f"@aionode/{self.domain}/{reader.node.participant}/post", batch)
 
     def ask(self, service: str, interface: Any, request: Any, *, wait_s: float = 0.0) -> int:
-        """Send a request; return the size of its answer, 0 if nobody waits for it.
+        """Send a request; return the size of its answer, or 0 without waiting for one.
 
         Args:
             service: Its name.
@@ -258,5 +257,5 @@ class Kept:
         self._what: Sequence[object] = what
 
     def undeclare(self) -> None:
-        """Keep it no more."""
+        """Release it."""
         self._what = ()

@@ -1,6 +1,6 @@
-"""Well-formed lies, one at a time: valid in their grammar, and absurd in their values.
+"""Well-formed lies, one at a time: syntactically valid, with absurd values.
 
-Each takes its values from a `random.Random`, so that a seed repeats them.
+Each takes its values from a `random.Random`, so that a seed reproduces them.
 """
 
 from __future__ import annotations
@@ -60,14 +60,14 @@ def lie_in_token(liar: Liar, chance: random.Random) -> None:
 
 
 def lie_in_message(liar: Liar, chance: random.Random) -> None:
-    """Publish with any number, and the gid of nobody."""
+    """Publish with any sequence number, and a gid that nobody has."""
     data = f"liar 0 {chance.randrange(10**9)} 0.0 {'x' * chance.choice(SIZES)}"
     sequence, gid = chance.choice(NUMBERS), chance.randbytes(16)
     liar.publish("/chatter", String(data=data), sequence, gid)
 
 
 def lie_in_request(liar: Liar, chance: random.Random) -> None:
-    """Ask for parameters, and set them, with any names and numbers."""
+    """Get and set parameters with any names and values."""
     names = [chance.choice(("large", "", "x" * 3000, "\x1b[2J"))] * chance.choice((0, 1, 1000))
     value = ParameterValue(type=chance.choice((0, 1, 4, 9, 255)), string_value="x" * 3000)
     parameters = [Parameter(name=name, value=value) for name in names]
@@ -92,7 +92,7 @@ def lie_in_request(liar: Liar, chance: random.Random) -> None:
 
 
 def lie_in_acknack(liar: Liar, chance: random.Random) -> None:
-    """Acknowledge, and ask for, any messages, in the listener's name."""
+    """Acknowledge and request any messages in the listener's name."""
     (talker,) = liar.known(EndpointKind.PUBLISHER, "/chatter")
     (listener,) = liar.known(EndpointKind.SUBSCRIPTION, "/chatter")
     ranges = [(chance.choice(NUMBERS), chance.choice(NUMBERS)) for _ in range(64)]
@@ -101,9 +101,9 @@ def lie_in_acknack(liar: Liar, chance: random.Random) -> None:
 
 
 def lie_in_submessage(liar: Liar, chance: random.Random) -> None:
-    """Tell the listener, in the talker's name, about any messages.
+    """Announce any messages to the listener in the talker's name.
 
-    DATA is left out: whoever may publish the topic may send it, as any message.
+    DATA is left out: whoever may publish on the topic may send it, like any message.
     """
     (talker,) = liar.known(EndpointKind.PUBLISHER, "/chatter")
     (listener,) = liar.known(EndpointKind.SUBSCRIPTION, "/chatter")
@@ -125,10 +125,10 @@ def nested_type(levels: int, fields: int, capacity: int = 0, tag: str = "") -> T
     """Return a type with fields of a type with fields of a type, and so on.
 
     Args:
-        levels: How many types there are.
-        fields: How many fields each has.
-        capacity: The size of the arrays that the fields are; 0 for single values.
-        tag: What the names of the types have, besides a number.
+        levels: The number of types.
+        fields: The number of fields of each.
+        capacity: The size of the fields' arrays; 0 for single values.
+        tag: Part of the types' names, besides a number.
     """
     name = f"liar_msgs/msg/T{tag}x{{}}".format
     container = 48 if capacity else 0
@@ -149,7 +149,7 @@ def nested_type(levels: int, fields: int, capacity: int = 0, tag: str = "") -> T
 
 
 def describe(liar: Liar, topic: str, description: TypeDescription) -> None:
-    """Announce a publisher of a type, and describe it so to all who ask."""
+    """Announce a publisher of a type, and return this description of it to all who ask."""
     name = description.type_description.type_name
     if not liar.descriptions:
 

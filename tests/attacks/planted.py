@@ -1,6 +1,6 @@
-"""A process of a fault case with defects that aionode once had: what a fuzzer has to find.
+"""A process of a fault case with former defects of aionode, which a fuzzer has to find.
 
-``python -m tests.attacks.planted DEFECT… ROLE``, with ROLE as `tests.faults.process` takes it.
+``python -m tests.attacks.planted DEFECT… ROLE``, with ROLE as for `tests.faults.process`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["DEFECTS"]
 
 
 def plant_descriptions() -> None:
-    """Let descriptions have any size, and walks over types not remember."""
+    """Remove the size limit of descriptions, and the memory of visited types."""
 
     def holds(cls: Any, containers: tuple[str, ...]) -> bool:
         return any(
@@ -37,7 +37,7 @@ def plant_descriptions() -> None:
 
 
 def plant_submessages() -> None:
-    """Let a HEARTBEAT or GAP move a reader as far as it likes, and never back."""
+    """Let a HEARTBEAT or GAP move a reader forward by any distance."""
     planted: Any = writer_proxy.WriterProxy
     planted._start_anew = planted._start_at = lambda *_: None
     setattr(writer_proxy, "BELIEVED", NEVER)  # noqa: B010 - a constant

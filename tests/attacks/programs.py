@@ -1,6 +1,6 @@
-"""What attackers do, each for some seconds; a function returns how often it tried.
+"""The attackers' programs; each function runs for some seconds and returns its attempts.
 
-``python -m tests.attacks.programs NAME SECONDS PID…`` runs one in a process of its own, beside the
+``python -m tests.attacks.programs NAME SECONDS PID…`` runs one in a process of its own against the
 processes with these ids. It prints ``begun`` when it has a session, and ``tries N`` at its end.
 """
 
@@ -80,14 +80,14 @@ def begun() -> None:
 
 
 def ends(liar: Liar) -> tuple[EndpointInfo, EndpointInfo]:
-    """Return the talker and the listener of the true messages."""
+    """Return the talker and the listener of the legitimate messages."""
     (talker,) = liar.endpoints(EndpointKind.PUBLISHER, "/chatter")
     (listener,) = liar.endpoints(EndpointKind.SUBSCRIPTION, "/chatter")
     return talker, listener
 
 
 def forged_text(number: int) -> str:
-    """Return what a forged message says, in the form of the true ones."""
+    """Return the text of a forged message, in the form of the legitimate ones."""
     return f"{FORGED} 0 {number} {time.monotonic()} "
 
 
@@ -117,7 +117,7 @@ def send_garbage(seconds: float, pids: Sequence[int]) -> int:
 
 
 def keep_connections(seconds: float, pids: Sequence[int]) -> int:
-    """Connect to each port on which the nodes listen, and say nothing."""
+    """Connect to each port on which the nodes listen, and send nothing."""
     listening = [
         each.laddr
         for pid in pids
@@ -133,7 +133,7 @@ def keep_connections(seconds: float, pids: Sequence[int]) -> int:
 
 
 def pretend_sessions(seconds: float, _: Sequence[int]) -> int:
-    """As another user, take all connect slots, and have the machine list 200 false sessions."""
+    """As another user, occupy all connect slots, and register 200 false sessions on the machine."""
     os.setgid(65534)
     os.setuid(65534)
     ports = [int(port) for port in os.environ["AIONODE_MEETING_PORTS"].split(",")]
@@ -153,7 +153,7 @@ def pretend_sessions(seconds: float, _: Sequence[int]) -> int:
 
 
 def forge_data(liar: Liar, seconds: float) -> int:
-    """Send DATA in the talker's name, on keys of both topics; and plain messages."""
+    """Send DATA and plain messages in the talker's name, on keys of both topics."""
     talker, listener = ends(liar)
     own_key = liar.submessage_key(SubmessageKind.DATA, replace(talker, name="/scan"), listener)
     begun()
@@ -169,7 +169,7 @@ def forge_data(liar: Liar, seconds: float) -> int:
 
 
 def post_batch(liar: Liar, seconds: float) -> int:
-    """Send messages in the talker's name as what its link could not deliver."""
+    """Send messages in the talker's name as if its link had failed to deliver them."""
     talker, listener = ends(liar)
     begun()
     for number in pace(seconds, 100):
@@ -182,7 +182,7 @@ def post_batch(liar: Liar, seconds: float) -> int:
 
 
 def move_reader(kind: SubmessageKind) -> Callable[[Liar, float], int]:
-    """Return what tells a reader that messages up to 2^62 were sent, or will not be."""
+    """Return an attack that tells a reader that messages up to 2^62 were or will not be sent."""
 
     def lie(liar: Liar, seconds: float) -> int:
         talker, listener = ends(liar)
@@ -198,7 +198,7 @@ def move_reader(kind: SubmessageKind) -> Callable[[Liar, float], int]:
 
 
 def send_absurd_submessages(liar: Liar, seconds: float) -> int:
-    """Send ACKNACKs in the listener's name, and what is no submessage, in any number."""
+    """Send many ACKNACKs in the listener's name, and data that is not a submessage."""
     talker, listener = ends(liar)
     begun()
     chance = random.Random(1)
@@ -215,7 +215,7 @@ def send_absurd_submessages(liar: Liar, seconds: float) -> int:
 
 
 def send_damaged(liar: Liar, seconds: float) -> int:
-    """Publish messages that are none, with attachments of others, of nobody, and of no form."""
+    """Publish invalid messages with attachments of others, of nobody, and in no valid form."""
     ends(liar)
     begun()
     chance = random.Random(1)
@@ -231,7 +231,7 @@ def send_damaged(liar: Liar, seconds: float) -> int:
 
 
 def ask_for_one_name(liar: Liar, seconds: float) -> int:
-    """Ask for a parameter of 100 kB by its name 40 000 times in one request, again and again."""
+    """Request a parameter of 100 kB 40 000 times in one request, repeatedly."""
     liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
     names = ["large"] * 40_000
     begun()
@@ -246,7 +246,7 @@ def ask_for_one_name(liar: Liar, seconds: float) -> int:
 
 
 def send_damaged_requests(liar: Liar, seconds: float) -> int:
-    """Send requests that are none."""
+    """Send invalid requests."""
     liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
     begun()
     chance = random.Random(1)
@@ -259,7 +259,7 @@ def send_damaged_requests(liar: Liar, seconds: float) -> int:
 
 
 def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
-    """Ask four times for what a publisher keeps for late readers, 10 MB, and read no answer."""
+    """Query the 10 MB that a publisher keeps for late readers four times, and read no answer."""
     liar.endpoints(EndpointKind.PUBLISHER, "/kept")
     time.sleep(FILLED_S)
     begun()
@@ -280,7 +280,7 @@ def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
 
 
 def ask_everything(liar: Liar, seconds: float) -> int:
-    """Ask every built-in service for as much as fits into a request."""
+    """Request as much as fits into a request from every built-in service."""
     liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
     names = ["large"] * 1_000
     values = [ParameterValue(type=4, string_value=str(number)) for number in range(2_000)]
@@ -356,7 +356,7 @@ def subscribe(liar: Liar, seconds: float, most: int, qos: QoSProfile) -> int:
 
 
 def flood_graph(liar: Liar, seconds: float) -> int:
-    """Announce 10 000 publishers of as many topics, and take them back."""
+    """Announce 10 000 publishers of as many topics, and withdraw them."""
     liar.be_node()
     begun()
     for number in pace(seconds, 10_000 / (seconds - 1)):
@@ -367,7 +367,7 @@ def flood_graph(liar: Liar, seconds: float) -> int:
 
 
 def announce_escapes(liar: Liar, seconds: float) -> int:
-    """Announce nodes, topics and types with escapes of terminals in their names."""
+    """Announce nodes, topics and types with terminal escape sequences in their names."""
     begun()
     for number in range(200):
         text = f"{SIGNS[number % len(SIGNS)]}]0;owned\n{number}"
@@ -386,7 +386,7 @@ def announce_escapes(liar: Liar, seconds: float) -> int:
 
 
 def never_acknowledge(liar: Liar, seconds: float) -> int:
-    """Subscribe with KEEP_ALL, as a context that acknowledges, and never acknowledge anything."""
+    """Subscribe with KEEP_ALL as an acknowledging context, and never acknowledge anything."""
     liar.be_node()
     begun()
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -410,7 +410,7 @@ def flood_topic(liar: Liar, seconds: float) -> int:
 
 
 def describe_absurdly(levels: int, fields: int, capacity: int) -> Callable[[Liar, float], int]:
-    """Return what describes the type of a topic so."""
+    """Return an attack that gives an absurd description of a topic's type."""
 
     def lie(liar: Liar, seconds: float) -> int:
         liar.be_node()
@@ -423,7 +423,7 @@ def describe_absurdly(levels: int, fields: int, capacity: int) -> Callable[[Liar
 
 
 def lie_randomly(liar: Liar, seconds: float) -> int:
-    """Say well-formed lies of some kinds, with absurd values; the environment says which."""
+    """Send well-formed lies with absurd values, of the kinds that the environment names."""
     ends(liar)
     liar.be_node()
     seed, *kinds = os.environ["AIONODE_LIES"].split()

@@ -1,6 +1,6 @@
-"""A short part of the attacks; `make attacks` runs all of them.
+"""A few of the attacks; `make attacks` runs all of them.
 
-They run side by side, once, as the short cases of the faults do; each is then a test of its own.
+They run once, at the same time, like the short fault cases; each is then a test of its own.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SHORT = {
 
 @cache
 def results() -> dict[str, Found | BaseException]:
-    """Return what came of each short attack."""
+    """Return the outcome of each short attack."""
     found: dict[str, Found | BaseException] = {}
 
     def take(attack: Attack, result: Found | BaseException) -> None:
@@ -44,7 +44,7 @@ def results() -> dict[str, Found | BaseException]:
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("name", SHORT)
 def test_an_attack_is_held(name: str) -> None:
-    """Every true message is heard or counted, and the loop and the memory stay as they were."""
+    """Each legitimate message is received or counted, and loop and memory stay as they were."""
     found = results()[name]
     if isinstance(found, BaseException):
         raise found
@@ -53,7 +53,7 @@ def test_an_attack_is_held(name: str) -> None:
 
 
 def test_the_table_says_why_an_attack_was_not_held() -> None:
-    """And what was said in the log first, and how many lines came after it."""
+    """It also has the first line of the log, and the number of further ones."""
     attack = Attack("shouts | loudly", "member", "wait", pair())
     outcome = Outcome(sent=10, lost=3, told=1, own_gap_s=0.3)
     found = Found(
@@ -74,7 +74,7 @@ def test_the_table_says_why_an_attack_was_not_held() -> None:
 def test_memory_that_zenoh_takes_by_itself_is_told_and_not_counted(
     zenoh_bytes: int, is_held: bool
 ) -> None:
-    """No program with a session can refuse it; what a node takes beside it counts."""
+    """No program with a session can prevent it; only a node's other memory counts."""
     attack = Attack("announces", "member", "wait", pair())
     found = Found(Outcome(), memory_before_bytes=100, memory_most_bytes=180, bare_bytes=zenoh_bytes)
 
@@ -93,7 +93,7 @@ def test_names_of_attacks_are_unique() -> None:
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", ["descriptions", "submessages"])
 def test_the_fuzzer_finds_a_planted_defect(kind: str) -> None:
-    """Within a minute of lies of that kind; and finds nothing where it is mended."""
+    """It finds it within a minute of such lies, and finds nothing without the defect."""
     from tests.attacks.fuzz import fuzz
 
     assert fuzz(60.0, [kind], (kind,))

@@ -1,4 +1,4 @@
-"""The lies of the fuzzer fit the protocol that is in use: they find what they are there to find."""
+"""The fuzzer's lies fit the current protocol, so that they find the defects they are meant to."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ GID = bytes(16)
 
 
 class Told:
-    """A reader that is told what a liar says, as it would come over the wire."""
+    """A reader that receives a liar's submessages as if over the wire."""
 
     def __init__(self) -> None:
         self.heard: list[int] = []
@@ -29,7 +29,7 @@ class Told:
         )
 
     def put(self, _key: str, payload: bytes, _extra: bytes | None = None) -> None:
-        """Take a submessage."""
+        """Process a submessage."""
         submessage = acknack.unpack(payload)
         if submessage is None:  # malformed
             return
@@ -39,7 +39,7 @@ class Told:
             self.proxy.gap(submessage.first, submessage.last)
 
     def accept(self, item: Any, _proxy: WriterProxy) -> bool:
-        """Hear a message."""
+        """Receive a message."""
         self.heard.append(item)
         return True
 
@@ -53,7 +53,7 @@ class Told:
 def test_the_lies_about_messages_find_a_reader_that_believes_them(
     monkeypatch: pytest.MonkeyPatch, *, is_planted: bool
 ) -> None:
-    """One HEARTBEAT or GAP with 2^62 silenced a topic; a reader that is mended hears everything."""
+    """One HEARTBEAT or GAP with 2^62 silenced a topic; the fixed reader receives everything."""
     if is_planted:
         for name in ("_start_anew", "_start_at"):  # so that they are put back
             monkeypatch.setattr(WriterProxy, name, getattr(WriterProxy, name))
