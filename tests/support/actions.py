@@ -1,4 +1,4 @@
-"""Helpers of tests of actions: a server that does as it is told, and a client of plain calls."""
+"""Helpers for tests of actions: a controllable server, and a client made of plain calls."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ Impl = Fibonacci.Impl
 
 
 def uuid_of(number: int) -> UUID:
-    """Return the id with this number."""
+    """Return the id made from a number."""
     return UUID(uuid=list(number.to_bytes(16, "big")))
 
 
 def endpoint_count(node: Node) -> int:
-    """Return how many endpoints and timers a node has, those of its actions included."""
+    """Return how many endpoints and timers a node has, including those of its actions."""
     return sum(
         len([*entities])
         for entities in (
@@ -45,19 +45,19 @@ def endpoint_count(node: Node) -> int:
 
 
 async def end_of(goal: Goal) -> GoalStatus:
-    """Wait until the server has ended a goal, and return how."""
+    """Wait until the server has ended a goal, and return its status."""
     await until(lambda: not goal.is_active)
     return goal.status
 
 
 def result_client(node: Node) -> Client[Any, Any]:
-    """Return the client by which an action client of a node asks for results, and gives signs."""
+    """Return the client with which a node's action client requests results and sends life signs."""
     (client,) = [each for each in node.clients if each.srv_name.endswith("/get_result")]
     return client
 
 
 class Worker:
-    """An `execute_callback` that begins, and ends when the test says so."""
+    """An `execute_callback` that ends when the test allows it."""
 
     def __init__(self) -> None:
         self.begun: asyncio.Queue[Goal] = asyncio.Queue()
@@ -107,15 +107,15 @@ class PlainClient:
         )
 
     async def result(self, number: int = 1) -> Any:
-        """Ask for a result; return the response."""
+        """Request a result; return the response."""
         return await self._results.call(Impl.GetResultService.Request(goal_id=uuid_of(number)))
 
     async def sign(self, number: int = 1) -> None:
-        """Give a sign of life, as a client of aionode does three times in a while."""
+        """Send a sign of life, as an aionode client does regularly."""
         await self._tell(alive_id(bytes(uuid_of(number).uuid)))
 
     async def leave(self, number: int = 1) -> None:
-        """Say that the goal goes on without its client."""
+        """Announce that the goal continues without its client."""
         await self._tell(left_id(bytes(uuid_of(number).uuid)))
 
     async def _tell(self, asked_id: bytes) -> None:
@@ -124,12 +124,12 @@ class PlainClient:
         assert answer.status == 0  # as for any goal that does not exist
 
     async def cancel(self, number: int = 1, stamp: Time | None = None) -> tuple[int, list[int]]:
-        """Ask to cancel; return the code and the numbers of the goals."""
+        """Request cancelling; return the code and the numbers of the goals."""
         info = GoalInfo(goal_id=uuid_of(number), stamp=stamp or Time())
         response = await self._cancels.call(CancelGoal.Request(goal_info=info))
         return response.return_code, [number_of(each.goal_id) for each in response.goals_canceling]
 
 
 def number_of(goal_id: UUID) -> int:
-    """Return the number of an id."""
+    """Return the number from which an id was made."""
     return int.from_bytes(bytes(goal_id.uuid), "big")

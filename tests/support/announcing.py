@@ -1,7 +1,7 @@
-"""Runs a program, and writes one byte to a file descriptor as soon as a node of it runs.
+"""Runs a program, and writes one byte to a file descriptor as soon as one of its nodes runs.
 
-``python tests/support/announcing.py 5 examples/talker.py …``: a test that waits for that byte knows
-that signals are handled from now on, without sleeping.
+``python tests/support/announcing.py 5 examples/talker.py …``: when a test has read that byte,
+signals are handled, so it needs no sleep.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The objects that endpoints give to transports and get from them, and the gids of endpoints."""
+"""The objects that endpoints pass to transports and get from them, and the gids of endpoints."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) 
 
 
 def direct_subscription(node: Node, *args: Any) -> Subscription[Any]:
-    """Return a subscription that hands messages on as they arrive, as recorders have them."""
+    """Return a subscription that passes messages on as they arrive, as recorders use."""
     return subscribe_directly(node, *args)
 
 
 def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:
-    """Return the object that a subscription gives to each transport, which delivers to it."""
+    """Return the object to which each transport delivers for a subscription."""
     return subscription._reader
 
 
 def writers_of(publisher: Publisher[Any] | BarePublisher) -> tuple[Writer, ...]:
-    """Return the writers that a publisher got from the transports, one from each."""
+    """Return the writers of a publisher, one from each transport."""
     return tuple(publisher._writers)
 
 
 def serve_of(service: Service[Any, Any]) -> Serve:
-    """Return the function that a service gives to each transport: it takes the requests."""
+    """Return the function to which each transport passes a service's requests."""
     return service._serve

@@ -1,9 +1,9 @@
-"""A stand-in for `zenoh-bridge-ros2dds`, with the nodes on DDS behind it: Zenoh, and no aionode.
+"""A stand-in for `zenoh-bridge-ros2dds` and the DDS nodes behind it: Zenoh without aionode.
 
-It does what the plugin's source and runs against it have shown: keys, tokens, routes and their end,
-the ids of requests, its own answers. It also dies of what the real one dies of, and says of what.
+It behaves as the plugin's source and runs against it have shown: keys, tokens, routes and their
+end, the ids of requests, and its own answers. It also records what would have crashed the real one.
 
-``python -m tests.support.bridge`` is one in a process: `/chatter` counts ten times a second, and
+``python -m tests.support.bridge`` runs one in a process: `/chatter` counts ten times a second, and
 `/add_two_ints` adds.
 """
 
@@ -50,12 +50,12 @@ def string(text: str) -> bytes:
 
 
 def cause_of_death(token: str, namespace: str = "/") -> str | None:
-    """Return why a bridge does not survive a token below ``@/<zid>/@ros2_lv``, if so.
+    """Return why a token below ``@/<zid>/@ros2_lv`` would crash a bridge; None if it would not.
 
     Args:
         token: The token.
-        namespace: That of the bridge. The plugin (`key_expr_to_ros2_name`) cuts it off a key that
-            begins with its letters, and later one character more for the slash.
+        namespace: The bridge's namespace. The plugin (`key_expr_to_ros2_name`) removes it from a
+            key that begins with its letters, and later one more character for the slash.
     """
     rest = token.split("/", 3)[3:]
     if not rest:
@@ -77,20 +77,20 @@ def cause_of_death(token: str, namespace: str = "/") -> str | None:
 
 
 class StandIn:
-    """One bridge, and what is on DDS behind it.
+    """One bridge, and the DDS nodes behind it.
 
     Args:
         session: Its session.
         namespace: The namespace of its configuration.
-        joins_late: How many queries for its settings stay without an answer. A real bridge has its
-            token before its DDS participant, and declares its queryable after that.
+        joins_late: How many queries for its settings get no answer. A real bridge has its token
+            before its DDS participant, and declares its queryable later.
 
     Attributes:
         zid: Its id.
         deaths: What would have killed it: tokens, and payloads on its keys.
         announced: The tokens of others that exist now.
-        seen: All tokens of others that there ever were.
-        received: The payloads that DDS subscriptions got, by topic.
+        seen: All tokens of others that ever existed.
+        received: The payloads that DDS subscriptions received, by topic.
     """
 
     def __init__(self, session: zenoh.Session, namespace: str = "/", joins_late: int = 0) -> None:
@@ -121,7 +121,7 @@ class StandIn:
         return self._prefix + name.strip("/")
 
     def announce(self, kind: str, name: str, type_name: str, qos: str | None = None) -> Any:
-        """Declare a token of something on DDS."""
+        """Declare the token of a DDS endpoint."""
         chunks = [self.key(name).replace("/", "§"), type_name.replace("/", "§")]
         if qos is not None:
             chunks.append(qos)
@@ -151,7 +151,7 @@ class StandIn:
                 self._cut.add(chunks[4].replace("§", "/"))
 
     def _check(self, sample: zenoh.Sample) -> None:
-        """Note what DDS readers cannot read, on keys that pass the bridge."""
+        """Record data that DDS readers could not decode, on keys that pass the bridge."""
         key = str(sample.key_expr)
         if not key.startswith(self._prefix) or "::" in key:  # of rmw_zenoh
             return
@@ -162,7 +162,7 @@ class StandIn:
             self.deaths.append(f"{key}: {payload.hex()}")
 
     def _check_query(self, query: zenoh.Query) -> None:
-        """Note what would call DDS servers with a request that is none."""
+        """Record invalid requests that would reach DDS servers."""
         key = str(query.key_expr)
         with query:
             if key.startswith(self._prefix) and "::" not in key and query.payload is None:
@@ -186,7 +186,7 @@ class StandIn:
     def publisher(
         self, name: str, type_name: str = STRING, qos: str = CYCLONE
     ) -> Callable[[bytes], None]:
-        """Have a DDS node publish: return the function that does."""
+        """Create a DDS publisher, and return the function that publishes."""
         key = self.key(name)
         # A reliable route blocks: a reader that hangs holds up the robot.
         reliable = qos.split(":")[1] == "1"
@@ -210,7 +210,7 @@ class StandIn:
         return publish
 
     def subscribe(self, name: str, type_name: str = STRING, qos: str = CYCLONE) -> list[bytes]:
-        """Have a DDS node subscribe: return the list of what it receives."""
+        """Create a DDS subscription, and return the list of what it receives."""
         key = self.key(name)
         received = self.received.setdefault(name, [])
 
@@ -233,7 +233,7 @@ class StandIn:
     def serve(
         self, name: str, type_name: str, answer: Callable[[bytes], bytes | None], kind: str = "SS"
     ) -> None:
-        """Have a DDS node serve; None is no answer, as from one on Fast DDS."""
+        """Create a DDS server; None stands for no answer, as from a server on Fast DDS."""
 
         def take(query: zenoh.Query) -> None:
             payload = b"" if query.payload is None else query.payload.to_bytes()
@@ -256,7 +256,7 @@ class StandIn:
         self._declared[f"server {name}"] = declared
 
     def call(self, name: str, request: bytes, timeout_s: float = 5.0) -> list[bytes]:
-        """Have a DDS node call a service: return all responses, of which the last counts."""
+        """Call a service as a DDS node, and return all responses, of which the last counts."""
         self._requests += 1
         extra = b"rqh" + bytes(range(8)) + struct.pack("<q", self._requests) + b"\1"
         replies = self.session.get(
@@ -289,7 +289,7 @@ def add(request: bytes) -> bytes:
 
 @contextmanager
 def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -> Iterator[StandIn]:
-    """Run a stand-in on the port of routers, or beside one there; it dials processes there, too."""
+    """Run a stand-in that listens on the port of routers, or dials a router that does."""
     listen = os.environ["AIONODE_ROUTER_PORT"] if first else "0"
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     config = zenoh.Config()
@@ -313,7 +313,7 @@ def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -
 
 
 async def main() -> None:
-    """Be a bridge until the process is killed."""
+    """Run as a bridge until the process is killed."""
     with stand_in() as bridge:
         publish = bridge.publisher("/chatter")
         bridge.serve("/add_two_ints", ADD, add)

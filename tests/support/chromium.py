@@ -1,4 +1,4 @@
-"""Chromium without a window, driven through its DevTools protocol."""
+"""Headless Chromium, driven through its DevTools protocol."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Page:
         return box[0], box[1]
 
     async def mouse(self, kind: str, x: float, y: float) -> None:
-        """Do with the left button what `kind` says: mousePressed, mouseMoved or mouseReleased."""
+        """Send an event of the left button: mousePressed, mouseMoved or mouseReleased."""
         await self.do(
             "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1, buttons=1
         )
@@ -109,7 +109,7 @@ class Page:
         await self.mouse("mouseReleased", x, y)
 
     async def choose(self, selector: str, value: str) -> None:
-        """Choose a value of a select that has it, or soon will."""
+        """Choose a value of a select element, once it has it."""
         found = f"document.querySelector({selector!r})"
         await self.until(f"[...{found}.options].some(option => option.value === {value!r})")
         await self.value(
@@ -122,7 +122,7 @@ class Page:
         await self.value(f"{found}.value = {text!r}; {found}.dispatchEvent(new Event('change')); 1")
 
     async def screenshot(self, path: Path, selector: str | None = None) -> None:
-        """Write a picture of what is shown, or of one element."""
+        """Save a screenshot of the page, or of one element."""
         clip: dict[str, Any] = {}
         if selector:
             box = await self.value(
@@ -153,7 +153,7 @@ class Browser:
         self._context = ""
 
     async def begin(self) -> Self:
-        """Begin without what other browsers know; it is forgotten with the connection."""
+        """Create a separate browser context, which is discarded with the connection."""
         made = await self.do("Target.createBrowserContext", disposeOnDetach=True)
         self._context = made["browserContextId"]
         return self
@@ -167,7 +167,7 @@ class Browser:
         return await answer
 
     async def read(self) -> None:
-        """Give answers to those who wait for them, until the connection ends."""
+        """Pass answers to their callers until the connection ends."""
         with suppress(ConnectionClosed):
             async for text in self._connection:
                 message = json.loads(text)
@@ -197,7 +197,7 @@ class Browser:
 
 
 class Process:
-    """Chromium, which the tests of this process share: its start takes longer than most of them."""
+    """A Chromium shared by the tests of this process, as its start takes longer than most tests."""
 
     def __init__(self) -> None:
         assert CHROMIUM is not None
@@ -214,14 +214,14 @@ class Process:
         atexit.register(self.end)
 
     async def address(self) -> str:
-        """Wait until it listens, and return where."""
+        """Wait until it listens, and return the address."""
         async with asyncio.timeout(20):
             await until(lambda: self._address.is_file() and "/" in self._address.read_text())
         port, path = self._address.read_text().split()
         return f"ws://127.0.0.1:{port}{path}"
 
     def end(self) -> None:
-        """Kill it, with all its processes."""
+        """Kill it and all its processes."""
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
@@ -236,7 +236,7 @@ def process() -> Process:
 
 @asynccontextmanager
 async def chromium() -> AsyncIterator[Browser]:
-    """Yield a browser without cookies, caches and tabs of others; its own end with the block."""
+    """Yield a browser with its own cookies, caches and tabs, which end with the block."""
     address = await process().address()
     async with (
         connect(address, max_size=None, proxy=None) as connection,

@@ -1,4 +1,4 @@
-"""Bags of demonstrations in which a picture shows the joint angle at its time."""
+"""Bags of demonstrations in which each picture shows the joint angle at its time."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ SPEED = 0.5
 
 
 def angle(sec: float) -> float:
-    """Return the joint angle, which grows from 0, sometimes faster: in 10 s to 5 / 2 rad."""
+    """Return the joint angle, which grows at a varying rate from 0 to 2.5 rad in 10 s."""
     return SPEED * 0.5 * (sec - float(np.sin(2 * sec)) / 2)
 
 
 def picture(sec: float) -> Any:
-    """Return a picture whose left part is white, as far as the joint has turned."""
+    """Return a picture that is white on the left, as far as the joint has turned."""
     pixels = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     pixels[:, : column(angle(sec))] = 255
     return pixels
@@ -94,9 +94,9 @@ class Timing:
     """When a topic has messages.
 
     Attributes:
-        rate_hz: How many a second.
-        phase_sec: When the first one is.
-        jitter_sec: How far each is from its time, at most.
+        rate_hz: Messages per second.
+        phase_sec: The time of the first one.
+        jitter_sec: Maximum deviation of each from its time.
         late_sec: How long after its stamp each arrives.
         gaps: Spans without messages, in seconds.
     """
@@ -108,7 +108,7 @@ class Timing:
     gaps: Sequence[tuple[float, float]] = field(default_factory=tuple)
 
     def times(self, length_sec: float, seed: int = 0) -> list[float]:
-        """Return the seconds at which there are messages."""
+        """Return the times of the messages, in seconds."""
         random = np.random.default_rng(seed)
         count = int((length_sec - self.phase_sec) * self.rate_hz)
         times = self.phase_sec + np.arange(count) / self.rate_hz

@@ -1,8 +1,8 @@
-"""An rcl of this process alone: what `aionode.transport.rcl` calls, without ROS and without DDS.
+"""An rcl within this process, for `aionode.transport.rcl` without ROS and DDS.
 
-It has the shape of `Rcl` and of rclpy's extension module, as far as they are used. Messages go
-straight from publishers to subscriptions as CDR; every change is told by guard conditions, as the
-real one does from threads of its own.
+It has the interface of `Rcl` and of rclpy's extension module, as far as they are used. Messages go
+straight from publishers to subscriptions as CDR; changes are reported by guard conditions, as the
+real one does from its own threads.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ REFUSED = 1  # RCL_RET_ERROR
 
 
 def install(monkeypatch: pytest.MonkeyPatch) -> FakeRcl:
-    """Let ``transport="rcl"`` use a fake for the rest of a test, and return it."""
+    """Have ``transport="rcl"`` use a fake for the rest of a test, and return the fake."""
     if not hasattr(os, "eventfd"):
         pytest.skip("transport=rcl needs Linux, whose eventfds wake the event loop")
     rcl = FakeRcl()
@@ -74,7 +74,7 @@ def install(monkeypatch: pytest.MonkeyPatch) -> FakeRcl:
 
 
 class Profile(QoSProfile):
-    """A QoS profile as rclpy's."""
+    """A QoS profile like rclpy's."""
 
     def get_c_qos_profile(self) -> QoSProfile:
         """Return the form for the extension module."""
@@ -82,7 +82,7 @@ class Profile(QoSProfile):
 
 
 class Interface:
-    """A class of rosidl's."""
+    """A message class like rosidl's."""
 
     def __init__(self, type_name: str, type_hash: str) -> None:
         self.type_name = type_name
@@ -92,7 +92,7 @@ class Interface:
 
 
 class Messages:
-    """Messages in memory: an id for each, with its CDR."""
+    """Messages in memory: the CDR of each by its id."""
 
     def __init__(self, rcl: FakeRcl, cls: object) -> None:  # as MessageSupport
         self._rcl = rcl
@@ -115,14 +115,14 @@ class Messages:
 
 
 class Reference:
-    """What ``ctypes.byref`` returns."""
+    """The result of ``ctypes.byref``."""
 
     def __init__(self, structure: ctypes.Structure) -> None:
         self._obj = structure
 
 
 class Handle:
-    """What all handles of the extension module can do.
+    """The base of all handles of the extension module.
 
     Attributes:
         pointer: Its number.
@@ -168,13 +168,13 @@ class FakeContext:
 
 
 class ContextHandle(Handle):
-    """A participant; its gid prefix is in all gids."""
+    """A participant; all its gids begin with its gid prefix."""
 
     domain_id = 0
 
     @property
     def prefix(self) -> bytes:
-        """How its gids begin: all participants are on one host."""
+        """The prefix of its gids: all participants are on one host."""
         return HOST + self.pointer.to_bytes(8, "little")
 
     def new_gid(self) -> bytes:
@@ -239,7 +239,7 @@ class Entity(Handle):
         ]
 
     def info(self) -> dict[str, Any]:
-        """Return what discovery tells."""
+        """Return its description in discovery."""
         version, _, value = self.interface.type_hash.removeprefix("RIHS").partition("_")
         return {
             "endpoint_gid": list(self.gid),
@@ -289,7 +289,7 @@ class Guard(Handle):
     triggered = False
 
     def trigger_guard_condition(self) -> None:
-        """Wake the wait set that it is in."""
+        """Wake the wait set that contains it."""
         with self.rcl.condition:
             self.triggered = True
             self.rcl.condition.notify_all()
@@ -303,11 +303,11 @@ class WaitSet(Handle):
         self.guards: list[Guard] = []
 
     def clear_entities(self) -> None:
-        """Wait for nothing."""
+        """Remove all entities."""
         self.guards.clear()
 
     def add_guard_condition(self, guard: Guard) -> None:
-        """Wait for a guard condition too."""
+        """Add a guard condition."""
         self.guards.append(guard)
 
     def wait(self, timeout_ns: int) -> None:
@@ -324,16 +324,16 @@ class NodeNameNonExistentError(Exception):
 
 
 class FakeRcl:
-    """What `Rcl` is, without libraries.
+    """The interface of `Rcl` without its libraries.
 
     Attributes:
         refuses: Why publishing fails; empty if it does not.
         numbers: Whether messages come with a number, as over Fast DDS.
-        silent: How many questions for services of a node fail before they are answered.
-        hides_changes: Whether nothing tells of changes of the graph.
+        silent: How many queries for services of a node fail before one succeeds.
+        hides_changes: Whether changes of the graph are not reported.
         takes: How many times a subscription was asked for a message.
         published: How many messages were published.
-        is_fast_dds: Whether it tells of each message; if not, of the first of several.
+        is_fast_dds: Whether it reports each message; if not, only the first of several.
     """
 
     version = "9.9.9"
@@ -377,7 +377,7 @@ class FakeRcl:
         return lambda *arguments: kind(self, *arguments)
 
     def next_id(self) -> int:
-        """Return a number that nothing has yet."""
+        """Return an unused number."""
         return next(self._ids)
 
     def of(self, kind: type[Any]) -> list[Any]:
@@ -385,7 +385,7 @@ class FakeRcl:
         return [one for one in list(self.handles.values()) if isinstance(one, kind)]
 
     def note_change(self) -> None:
-        """Tell all nodes of a change of the graph."""
+        """Report a change of the graph to all nodes."""
         if self.hides_changes:
             return
         for node in self.of(NodeHandle):
@@ -442,7 +442,7 @@ class FakeRcl:
         handle.guards.append(self.handles[guard])
 
     def set_subscription_callback(self, pointer: int, _: None, fd: int | None) -> int:
-        """Let an eventfd be written when something comes."""
+        """Have an eventfd written when something arrives."""
         handle: Any = self.handles[pointer]
         handle.fd = fd
         return 0
@@ -537,7 +537,7 @@ class FakeRcl:
         return self.refuses
 
     def forget_error(self) -> None:
-        """Forget it."""
+        """Clear the error."""
 
     def new_array(self, size: int = 256) -> ByteArray:  # as rcl's
         """Return an array."""

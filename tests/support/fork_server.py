@@ -1,10 +1,10 @@
-"""Python programs that begin with aionode imported: a fork server makes their processes.
+"""Python programs whose processes a fork server makes, with aionode already imported.
 
-A start of Python with aionode and Zenoh takes 0.3 s of processor time, and there are hundreds.
-A process of the fork server differs from one of `python program.py` in the modules that it has
-imported already, in the command line and the environment that the system shows, and in its end:
-exit handlers run and output is flushed, but the interpreter is not finalized. Tests about these
-start Python themselves (`fresh`).
+Starting Python with aionode and Zenoh takes 0.3 s of processor time, and tests do so hundreds of
+times. A process of the fork server differs from `python program.py` in the modules already
+imported, in the command line and environment that the system shows, and in its end: exit handlers
+run and output is flushed, but the interpreter is not finalized. Tests about these start Python
+themselves (`fresh`).
 """
 
 from __future__ import annotations
@@ -75,14 +75,13 @@ OF_RCLPY: Final[dict[str, ModuleType]] = {}
 def start(
     arguments: list[str], *, env: Mapping[str, str], fresh: bool = False, **options: Any
 ) -> subprocess.Popen[str]:
-    """Start a program of Python, by a fork server if that has the same effect.
+    """Start a Python program, by a fork server if that has the same effect.
 
     Args:
         arguments: What follows `python` on the command line.
         env: Its environment, to which `PYTHONUNBUFFERED` is added.
-        fresh: Whether Python itself starts: where its start, or the end of the interpreter, is what
-            a test is about.
-        options: Of `subprocess.Popen`. Each of the standard streams has to be given.
+        fresh: Whether to start Python itself, for tests about its start or its finalization.
+        options: Options of `subprocess.Popen`. Each of the standard streams has to be given.
     """
     whole = {**env, "PYTHONUNBUFFERED": "1"}
     is_forked = not fresh and can_fork(arguments, whole)
@@ -109,11 +108,10 @@ def run(
 
 
 def can_fork(arguments: list[str], env: Mapping[str, str]) -> bool:
-    """Return whether a fork server may start a program, with the same effect.
+    """Return whether a fork server would start a program with the same effect.
 
-    It may not where lines of child processes are counted, where a variable of the environment
-    changes what Python does as it starts, or where the program would inherit that a signal is
-    ignored.
+    It would not if lines of child processes are counted, an environment variable changes how Python
+    starts, or the program would inherit an ignored signal.
     """
     inherited = (signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
     settings = {name for name in env if name.startswith("PYTHON")}
@@ -127,9 +125,9 @@ def can_fork(arguments: list[str], env: Mapping[str, str]) -> bool:
 
 
 class ForkedProgram(subprocess.Popen[str]):
-    """A program of Python, as `subprocess.Popen` would start it.
+    """A Python program, as if started by `subprocess.Popen`.
 
-    Its standard streams may be anything but those of the test.
+    Its standard streams must not be those of the test.
     """
 
     def _execute_child(  # as Popen calls it
@@ -208,14 +206,14 @@ def server() -> Server:
 
 
 def kept() -> dict[str, str]:
-    """Return the settings of Python that the server and all its programs have."""
+    """Return the Python settings that the server shares with all its programs."""
     prefix = os.environ.get("PYTHONPYCACHEPREFIX")
     cache = {"PYTHONPYCACHEPREFIX": prefix} if prefix else {}
     return {"PYTHONUNBUFFERED": "1", **cache}
 
 
 def set_subreaper(*, is_one: bool) -> None:
-    """Have this process be, or not be, the parent of descendants whose own parent has ended."""
+    """Set whether this process adopts descendants whose own parent has ended."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, int(is_one), 0, 0, 0)
 
 
@@ -223,7 +221,7 @@ def set_subreaper(*, is_one: bool) -> None:
 
 
 def preload() -> None:
-    """Import what programs import, none of which may start a thread: a fork would lose it."""
+    """Import what programs use; none of it may start a thread, which a fork would lose."""
     gc.disable()
     for name in PRELOADED:
         importlib.import_module(name)
@@ -249,7 +247,7 @@ def import_all(name: str) -> None:
 
 
 def serve(connection: socket.socket) -> dict[str, Any] | None:
-    """Make a process for each request, and return the request in it; None when all is done."""
+    """Fork for each request, and return the request in the child; None at the end."""
     while True:
         data, streams, _, _ = socket.recv_fds(connection, REQUEST_BYTES, MOST_STREAMS)
         if not data:
@@ -276,7 +274,7 @@ def serve(connection: socket.socket) -> dict[str, Any] | None:
 
 
 def become(program: dict[str, Any], streams: list[int]) -> None:
-    """Make this process what Python is before the first line of a program."""
+    """Put this process into the state of Python before the first line of a program."""
     if program["process_group"] >= 0:
         os.setpgid(0, program["process_group"])
     kept = [fcntl.fcntl(stream, fcntl.F_DUPFD, FIRST_FREE) for stream in streams]
@@ -292,7 +290,7 @@ def become(program: dict[str, Any], streams: list[int]) -> None:
 
 
 def run_here(arguments: list[str]) -> None:
-    """Run a program as `python` with these arguments does."""
+    """Run a program like `python` with these arguments."""
     first, *rest = arguments
     if first == "-m":
         sys.argv[:] = rest
@@ -314,11 +312,11 @@ def run_here(arguments: list[str]) -> None:
 
 
 def end_here(status: int) -> None:
-    """End this process as Python does, but without taking the modules apart.
+    """End this process as Python does, but without tearing down the modules.
 
-    To take them apart is half of a short program's processor time: the system copies each page of
-    the fork server's memory in which a reference is counted. The function returns, and Python ends
-    the program itself, if there are threads to wait for, or output that nobody takes.
+    Tearing them down is half of a short program's processor time: the system copies each page of
+    the fork server's memory in which a reference count changes. If there are threads to wait for,
+    or output that nobody reads, the function returns, and Python ends the program itself.
     """
     if any(not thread.daemon for thread in threading.enumerate()[1:]):
         return

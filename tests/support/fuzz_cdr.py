@@ -1,8 +1,8 @@
-"""Damages encoded messages at random and decodes them, as many as requested.
+"""Decodes any number of randomly damaged messages.
 
-``python -m tests.support.fuzz_cdr --cases 1000000 --seed 1``. There may be a message or a
-`DecodeError`, and the generated decoder has to agree with the plain one. A case that fails is
-printed with its seed, type and bytes.
+``python -m tests.support.fuzz_cdr --cases 1000000 --seed 1``. The result is a message or a
+`DecodeError`, and the generated decoder has to agree with the plain one. A failing case is printed
+with its seed, type and bytes.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ TELLING = (0, 1, 2, 3, 4, 5, 8, 127, 128, 192, 224, 237, 254, 255)
 
 
 class FuzzError(AssertionError):
-    """The two decoders disagree, or one raised what it should not."""
+    """The two decoders disagree, or one raised an undocumented error."""
 
 
 def damaged(data: bytes, source: random.Random) -> bytes:
-    """Return the bytes of a message after something happened to them."""
+    """Return the damaged bytes of a message."""
     broken = bytearray(data)
     for _ in range(source.randint(1, 4)):
         place = source.randrange(len(broken)) if broken else 0
@@ -51,7 +51,7 @@ def damaged(data: bytes, source: random.Random) -> bytes:
 
 
 def outcome(decode: Any, cls: type[Message], data: Any) -> bytes | str:
-    """Return what decoding comes to, in a form that can be compared even with NaN in it."""
+    """Return the result of decoding, in a form that is comparable even with NaN."""
     try:
         return cdr.encode(decode(cls, data))
     except DecodeError as error:
@@ -59,10 +59,10 @@ def outcome(decode: Any, cls: type[Message], data: Any) -> bytes | str:
 
 
 def fuzz(cases: int, seed: int) -> int:
-    """Try `cases` damaged messages; return how many of them could still be read.
+    """Decode `cases` damaged messages; return how many of them were still valid.
 
     Raises:
-        FuzzError: One was not decoded as it should be.
+        FuzzError: One was not decoded correctly.
     """
     source = random.Random(seed)  # noqa: S311 - not for secrets: the same again for the same seed
     samples = all_samples()

@@ -1,4 +1,4 @@
-"""A robot and the sessions of its clients, in one process, at a time that a test sets."""
+"""A robot and its clients' sessions in one process, with time controlled by a test."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Bench:
         self.lines: list[str] = []
 
     def allow(self, policy: str) -> None:
-        """Have a policy count, given as the text of its file."""
+        """Apply a policy, given as the text of its file."""
         self.robot.policy = Policy.parse(policy)
 
     def session(self, name: str = "guest", *groups: str, kind: str = "test") -> Session:
@@ -35,7 +35,7 @@ class Bench:
         return Session(self.robot, Identity(name, frozenset(groups), "127.0.0.1"), kind)
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the time."""
         await self.clock.advance(seconds)
         await settle()
 

@@ -1,4 +1,4 @@
-"""A gateway on a port of this host, clients with headers of their own, and a cable to cut."""
+"""A gateway on a port of this host, clients with custom headers, and a cable that can be cut."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def address(gateway: Gateway, path: str = "/") -> str:
 
 
 def sessions_of(gateway: Gateway) -> list[Session]:
-    """Return the sessions of the clients, of which `stats` has the numbers only."""
+    """Return the sessions of the clients, of which `stats` has only the counts."""
     return gateway.clients.sessions
 
 
@@ -62,7 +62,7 @@ def subscribers_of(gateway: Gateway) -> int:
 
 
 def connections_of(gateway: Gateway) -> int:
-    """Return how many sockets the gateway has for its clients, as the operating system counts."""
+    """Return the gateway's number of client sockets, according to the operating system."""
     sockets = psutil.Process().net_connections("tcp")
     mine = [each for each in sockets if each.laddr.port == gateway.port]
     return sum(each.status != psutil.CONN_LISTEN for each in mine)
@@ -85,7 +85,7 @@ async def get(
 async def raw_connect(
     gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str]
 ) -> AsyncIterator[ClientConnection]:
-    """Connect with headers of one's own, as no library lets a page do."""
+    """Connect with custom headers, which a page could not set."""
     host = headers.get("host", f"127.0.0.1:{gateway.port}")
     others = {name: value for name, value in headers.items() if name != "host"}
     async with connect(
@@ -102,7 +102,7 @@ async def raw_connect(
 async def upgraded(
     gateway: Gateway, more: str = "", path: str = "/"
 ) -> tuple[asyncio.StreamReader, asyncio.StreamWriter, str]:
-    """Begin a WebSocket whose frames the test writes itself.
+    """Open a WebSocket whose frames the test writes itself.
 
     Args:
         gateway: The gateway.
@@ -110,7 +110,7 @@ async def upgraded(
         path: The path.
 
     Returns:
-        What reads, what writes, and the head of the answer.
+        The reader, the writer, and the head of the answer.
     """
     reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
     writer.write(UPGRADE.format(path=path, more=more).encode())
@@ -119,7 +119,7 @@ async def upgraded(
 
 
 def drive(speed: float) -> str:
-    """Return a command, as a client of rosbridge sends it."""
+    """Return a command as a rosbridge client sends it."""
     command = {"linear": {"x": speed}}
     op = {"op": "publish", "topic": "/cmd_vel", "type": "geometry_msgs/Twist", "msg": command}
     return json.dumps(op)
@@ -129,9 +129,9 @@ Kept = asyncio.Queue[bytes]
 
 
 class Cable:
-    """What is between a client and the gateway; it keeps what is sent while it is cut.
+    """The connection between a client and the gateway; it keeps what is sent while it is cut.
 
-    TCP does the same: it sends again what was lost.
+    TCP does the same, by retransmission.
 
     Attributes:
         port: Where the client connects.
@@ -149,12 +149,12 @@ class Cable:
         self.join()
 
     def cut(self) -> None:
-        """Let nothing through."""
+        """Pass nothing on."""
         self.to_gateway.clear()
         self.to_client.clear()
 
     def join(self) -> None:
-        """Let everything through, and what was sent meanwhile first."""
+        """Pass everything on, first what was sent meanwhile."""
         self.to_gateway.set()
         self.to_client.set()
 
@@ -191,7 +191,7 @@ class Cable:
 
 @asynccontextmanager
 async def cable(gateway: Gateway) -> AsyncIterator[Cable]:
-    """Yield a cable to a gateway, which is whole at the end."""
+    """Yield a cable to a gateway, which is joined at the end."""
     made = Cable(gateway.port)
     server = await asyncio.start_server(made.serve, "127.0.0.1", 0)
     made.port = server.sockets[0].getsockname()[1]
@@ -203,7 +203,7 @@ async def cable(gateway: Gateway) -> AsyncIterator[Cable]:
 
 
 class Busy:
-    """How long the loop's thread was busy in one turn at most, in seconds, and of how many."""
+    """The longest busy time of the loop's thread in a turn, in seconds, and the number of turns."""
 
     longest_sec = 0.0
     turns = 0
@@ -211,7 +211,7 @@ class Busy:
 
 @asynccontextmanager
 async def busiest_turn() -> AsyncIterator[Busy]:
-    """Yield how long turns of the event loop take: processor time, not waits for a core."""
+    """Yield the duration of turns of the event loop, as processor time without waits for a core."""
     busy = Busy()
 
     async def watch() -> None:

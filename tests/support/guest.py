@@ -1,4 +1,4 @@
-"""The belongings of a program that are not the library's, and whether all of them are as before."""
+"""Checks that a library leaves everything that belongs to the program as it was."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ STEP_S = 0.01
 
 @contextmanager
 def locks(folder: Path) -> Iterator[None]:
-    """Hold an exclusive record lock and an exclusive transaction; at the end, both have to hold."""
+    """Hold an exclusive record lock and an exclusive transaction, and check both at the end."""
     record, database = folder / "record", folder / "log.sqlite"
     record.write_bytes(b"mine")
     with (
@@ -87,13 +87,13 @@ def broken(record: Path, database: Path) -> str:
 
 @contextmanager
 def guest(folder: Path) -> Iterator[None]:
-    """Hold and set all that a program may; at the end, all of it has to be as before.
+    """Hold and set everything that a program may, and check at the end that it is unchanged.
 
-    Locks, pipes, a terminal, sockets, handlers of signals, children, a thread, and the settings of
-    the interpreter and of a running event loop. To be used in the main thread.
+    Locks, pipes, a terminal, sockets, signal handlers, children, a thread, and the settings of the
+    interpreter and of a running event loop. For the main thread.
 
     Args:
-        folder: Where it may make files.
+        folder: A folder for files.
     """
     with ExitStack() as stack:
         stack.enter_context(locks(folder))
@@ -116,7 +116,7 @@ def assert_same(subject: str, before: dict[str, Any], after: dict[str, Any]) -> 
 
 
 def states(files: dict[str, int]) -> dict[str, Any]:
-    """Return what descriptors stand for, and whether they block and are inherited."""
+    """Return the targets of descriptors, and whether they block and are inherited."""
     return {
         name: (Path(f"/proc/self/fd/{number}").readlink(), fcntl.fcntl(number, fcntl.F_GETFL))
         for name, number in files.items()
@@ -125,7 +125,7 @@ def states(files: dict[str, int]) -> dict[str, Any]:
 
 @contextmanager
 def handlers() -> Iterator[None]:
-    """Have the program's own handlers of signals, and its own descriptor that they write to."""
+    """Install signal handlers of the program, and its own wake-up descriptor."""
     numbers = {signal.SIGUSR1, signal.SIGUSR2, signal.SIGHUP, signal.SIGALRM, signal.SIGCHLD}
     before = {number: signal.signal(number, lambda *_: None) for number in numbers}
     ours, theirs = socket.socketpair()
@@ -149,7 +149,7 @@ def handlers() -> Iterator[None]:
 
 @contextmanager
 def pipes() -> Iterator[Callable[[], None]]:
-    """Have a pipe with something in it, and a terminal; what they have is read at the end."""
+    """Hold a pipe and a terminal with data in them, which is read at the end."""
     read, write = os.pipe()
     master, slave = pty.openpty()
     files = {"pipe": read, "its end": write, "terminal": master, "its other side": slave}
@@ -173,7 +173,7 @@ def pipes() -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def connections() -> Iterator[Callable[[], None]]:
-    """Have sockets: one that only sends and has Zenoh's SO_LINGER, and others."""
+    """Hold sockets: one that only sends and has Zenoh's SO_LINGER, and others."""
     with ExitStack() as stack:
         server = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
         log = stack.enter_context(socket.create_connection(server.getsockname()))
@@ -205,7 +205,7 @@ def connections() -> Iterator[Callable[[], None]]:
 
 
 def options(sockets: dict[str, socket.socket]) -> dict[str, Any]:
-    """Return what sockets stand for, and their options."""
+    """Return the addresses and options of sockets."""
     found = states({name: one.fileno() for name, one in sockets.items()})
     for name, one in sockets.items():
         found[f"{name}: linger"] = one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
@@ -216,7 +216,7 @@ def options(sockets: dict[str, socket.socket]) -> dict[str, Any]:
 
 @contextmanager
 def children() -> Iterator[Callable[[], None]]:
-    """Have a forked child and a spawned one, neither of which anybody may signal or reap."""
+    """Hold a forked child and a spawned one, which nobody else may signal or reap."""
     forked = os.fork()
     if forked == 0:
         signal.pause()
@@ -237,7 +237,7 @@ def children() -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def thread() -> Iterator[Callable[[], None]]:
-    """Have a thread that works."""
+    """Hold a running thread."""
     turns, ended = [0], threading.Event()
 
     def work() -> None:

@@ -1,4 +1,4 @@
-"""A client of a web server that a test has started."""
+"""A client of a web server started by a test."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Reads data sets as LeRobot 0.6 does, written from its source, without torch and its 8 GB.
+"""Reads data sets like LeRobot 0.6, as its source does, without torch and its 8 GB.
 
-It asks of a file what that reader asks: the types of columns from ``info.json``, the row of an
-episode by its position, each frame of a video by its time within 0.1 ms.
+It has the same requirements: the types of columns are those in ``info.json``, the row of an episode
+is found by its position, and each frame of a video by its time within 0.1 ms.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Two nodes in two contexts that can be linked, and numbers sent from one to the other."""
+"""Two nodes in two contexts that can be linked, and numbers sent between them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ PERIOD_S = 0.001
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Give a test a folder for sockets of its own, with a path that is short enough."""
+    """Give a test its own folder for sockets, with a short enough path."""
     root = Path(tempfile.mkdtemp(prefix="aio"))
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
     monkeypatch.setattr(manager, "AGAIN_S", 0.01)
@@ -72,7 +72,7 @@ def manager_of(node: Node) -> manager.LinkManager:
 
 
 def calls_of(node: Node) -> dict[tuple[bytes, int], Any]:
-    """Return the calls of a node's context that are under way over links, by client and number."""
+    """Return the pending calls of a node's context over links, by client and number."""
     return {
         (gid, number): call
         for gid, requester in manager_of(node).requesters.items()
@@ -94,17 +94,17 @@ def fd_of(link: Connection) -> int:
 
 
 def freeze(link: Connection) -> None:
-    """Have a link read nothing, as if its process were frozen."""
+    """Stop a link from reading, as if its process were frozen."""
     asyncio.get_running_loop().remove_reader(fd_of(link))
 
 
 def read(link: Connection) -> bool:
-    """Have a link read once what its socket has; return whether it had anything."""
+    """Have a link read once from its socket; return whether there was any data."""
     return link._on_readable()
 
 
 def thaw(link: Connection) -> None:
-    """Have a link read again."""
+    """Let a link read again."""
     asyncio.get_running_loop().add_reader(fd_of(link), read, link)
 
 
@@ -151,7 +151,7 @@ class Counting:
         )
 
     async def go_until(self, condition: Callable[[], Any]) -> None:
-        """Go on until something is so; a publisher at full speed would only delay it."""
+        """Continue until a condition holds; a publisher at full speed would only delay it."""
         while not condition():
             await self.go()
             await asyncio.sleep(PERIOD_S)  # noqa: TID251  # a clock's alarm has a file

@@ -1,4 +1,4 @@
-"""A robot that can be moved, an assistant for it, and clients in this process and over HTTP."""
+"""A robot that can be moved, an assistant, and clients in this process and over HTTP."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ parameter = "/base:*"
 
 
 class Base(Node):
-    """A robot: it notes its commands, and has a service, an action, a parameter and a text."""
+    """A robot that records its commands, with a service, an action, a parameter and a text."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("base", **options)
@@ -78,7 +78,7 @@ class Base(Node):
         return response
 
     async def count(self, handle: Any) -> Fibonacci.Result:
-        """Count until the goal is given up, and note how it ends; an order of 0 ends at once."""
+        """Count until the goal is cancelled, and record its end; an order of 0 ends at once."""
         self.goals.append("begun")
         self.has_commands.set()
         try:
@@ -95,7 +95,7 @@ class Base(Node):
             raise
 
     async def pause(self, seconds: float) -> None:
-        """Wait by the clock of the node."""
+        """Wait by the node's clock."""
         await self.get_clock().sleep(seconds)
 
 
@@ -123,7 +123,7 @@ class Bench:
     async def connect(self, mode: str = "auto", **options: Any) -> Any:
         """Return a client that stays connected until the test ends.
 
-        It is in a task of its own, as it has to be left in the task in which it was entered.
+        It runs in a task of its own, since its context has to be left in the task that entered it.
         """
         connected: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -137,7 +137,7 @@ class Bench:
         return await connected
 
     def target(self) -> Any:
-        """Return what a client connects to."""
+        """Return the target to which a client connects."""
         if isinstance(self.served, Gateway):
             return f"http://127.0.0.1:{self.served.port}/mcp"
         return self.served.server

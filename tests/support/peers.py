@@ -1,4 +1,4 @@
-"""Other participants for tests on Zenoh, out of earshot of everything else on the machine."""
+"""Other participants for tests over Zenoh, isolated from everything else on the machine."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 
 def kept(depth: int) -> QoSProfile:
-    """Return a profile that gives the last messages to late subscriptions."""
+    """Return a profile that sends the last messages to late subscriptions."""
     return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def ros_value(value: Any) -> Any:
-    """Return a recorded value in our form: an empty message has no field."""
+    """Return a recorded value in aionode's form: an empty message has no field."""
     if isinstance(value, dict):
         return {
             name: ros_value(each)
@@ -60,10 +60,10 @@ given_ports: set[int] = set()
 
 
 def free_ports(count: int) -> list[int]:
-    """Return loopback ports that are free, and will not be taken by chance.
+    """Return free loopback ports that nothing else will use by chance.
 
-    They lie below the ephemeral ports, which the system gives to other sessions, such as those of
-    another run of these tests. None is handed out twice.
+    They are below the ephemeral ports, which the system assigns to other sessions, such as those of
+    another run of these tests. None is returned twice.
     """
     found: list[int] = []
     with ExitStack() as until_all_are_found:
@@ -80,7 +80,7 @@ def free_ports(count: int) -> list[int]:
 
 
 def isolated_environment() -> dict[str, str]:
-    """Return variables with which processes hear each other and no other process."""
+    """Return environment variables with which processes see only each other."""
     ports = free_ports(4)
     return {
         "ROS_DOMAIN_ID": str(DOMAIN_ID),
@@ -98,7 +98,7 @@ async def two_contexts(**options: Any) -> AsyncIterator[tuple[Context, Context]]
 
 @asynccontextmanager
 async def contexts_over(way: str, **options: Any) -> AsyncIterator[tuple[Context, Context]]:
-    """One context twice, or two that a link or only Zenoh connects, as it connects processes.
+    """One context twice, or two connected by a link or only by Zenoh, like processes.
 
     Args:
         way: ``local``, ``link`` or ``zenoh``.
@@ -127,13 +127,13 @@ def router_client(port: str) -> Iterator[zenoh.Session]:
 
 
 def quiet_node(name: str, context: Context | None = None, **options: Any) -> Node:
-    """Return a node that has only what a test gives it, in a context of its own without one."""
+    """Return a node without services and parameters, by default in a context of its own."""
     options = {"enable_rosout": False, "start_parameter_services": False, **options}
     return Node(name, context=context or Context(), **options)
 
 
 class Collector:
-    """Takes what foreign threads bring, and lets a test wait for it."""
+    """Collects items from other threads, and lets a test wait for them."""
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -141,7 +141,7 @@ class Collector:
         self.items: list[Any] = []
 
     def __call__(self, item: Any) -> None:
-        """Take one item; from any thread."""
+        """Add one item; from any thread."""
         self.items.append(item)
         self._loop.call_soon_threadsafe(self._changed.set)
 
@@ -164,7 +164,7 @@ def zenoh_config(settings: Mapping[str, Any]) -> zenoh.Config:
 
 @contextmanager
 def raw_session(listen: str = "tcp/127.0.0.1:0") -> Iterator[zenoh.Session]:
-    """A plain Zenoh session that dials the first meeting port, unless it is there itself."""
+    """A plain Zenoh session that dials the first meeting port, unless it listens there itself."""
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     config = zenoh_config(
         {
@@ -180,7 +180,7 @@ def raw_session(listen: str = "tcp/127.0.0.1:0") -> Iterator[zenoh.Session]:
 
 
 async def known(session: zenoh.Session, tokens: str, count: int = 1) -> list[str]:
-    """Wait until a session sees `count` tokens that match, and return those."""
+    """Wait until a session sees `count` matching tokens, and return them."""
     found = Collector()
     subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
     try:
@@ -196,7 +196,7 @@ EVERYBODY = ["router", "peer"]
 
 
 def ros_session() -> zenoh.Session:
-    """Return a session as a ROS 2 node on rmw_zenoh_cpp opens it, but for the router's port."""
+    """Return a session like that of a ROS 2 node on rmw_zenoh_cpp, except for the router's port."""
     return zenoh.open(
         zenoh_config(
             {
@@ -229,7 +229,7 @@ def ros_session() -> zenoh.Session:
 
 
 def ros_router() -> zenoh.Session:
-    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only."""
+    """Return a router with the settings of `rmw_zenohd`, but another port and only loopback."""
     return zenoh.open(
         zenoh_config(
             {

@@ -1,4 +1,4 @@
-"""Programs in processes of their own, for what a test cannot do in its own."""
+"""Programs in processes of their own, for what a test cannot do in its process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether tests over an installed ROS 2 can run, and its processes."""
+"""Tests with an installed ROS 2: whether they can run, and their processes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def ros_missing(*packages: str) -> str:
     """Return why tests with an installed ROS 2 cannot run here; empty if they can.
 
     Args:
-        packages: Which packages of a ROS 2 they need that have no wheels.
+        packages: The required ROS 2 packages that have no wheels.
     """
     for package in ("rclpy", "std_msgs", "test_msgs"):
         if PathFinder.find_spec(package) is None:
@@ -45,13 +45,13 @@ def gids_of_a_client() -> int:
 
 
 def ros_domain(offset: int = 0) -> int:
-    """Return a domain of this process alone, below 102, from where on ports are ephemeral."""
+    """Return a domain for this process alone, below 102, as higher ones have ephemeral ports."""
     return 1 + (os.getpid() + offset) % 100
 
 
 @contextmanager
 def ros_peer(domain_id: int, program: str = "ros_peer") -> Iterator[subprocess.Popen[str]]:
-    """Run a program of `tests.support` in a domain: it prints ``ready``, and ends with stdin."""
+    """Run a program of `tests.support` in a domain; it prints ``ready``, and ends with stdin."""
     environ = {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain_id),

@@ -1,4 +1,4 @@
-"""A program of plain rclpy for tests: it serves, echoes, and does what it is told on a topic.
+"""A plain rclpy program for tests: it serves, echoes, and obeys commands on a topic.
 
 Commands are strings on ``/commands``, such as ``call 7``; the results go to ``/results``.
 """
@@ -80,7 +80,7 @@ class Peer(Node):
         self.parameters = AsyncParameterClient(self, "ours")
 
     def watch(self, topic: str) -> None:
-        """Publish on ``/events`` what happens to a subscription that asks much of publishers."""
+        """Publish the events of a subscription with strict requirements on ``/events``."""
         events = self.create_publisher(String, "events", 100)
 
         def tell(event: str) -> None:
@@ -103,7 +103,7 @@ class Peer(Node):
         )
 
     async def obey(self, command: Any) -> None:
-        """Do what a command says."""
+        """Execute a command."""
         word, _, value = command.data.partition(" ")
         await getattr(self, word)(value)
 
@@ -140,12 +140,12 @@ class Peer(Node):
         self.tell(answer.results[0].successful)
 
     async def hurry(self, text: str) -> None:
-        """Publish once where a deadline is promised."""
+        """Publish once on a topic with a deadline."""
         self.hurried.publish(String(data=text))
         self.tell(text)
 
     async def described(self, type_name: str) -> None:
-        """Ask the test's node what a type is."""
+        """Request the description of a type from the test's node."""
         client = self.create_client(GetTypeDescription, "ours/get_type_description")
         client.wait_for_service()
         answer = await client.call_async(GetTypeDescription.Request(type_name=type_name))
@@ -153,13 +153,13 @@ class Peer(Node):
         self.tell((answer.successful, fields))
 
     async def knows(self, name: str) -> None:
-        """Tell when a node has come."""
+        """Report when a node has appeared."""
         while name not in self.get_node_names():
             self.create_rate(50).sleep()
         self.tell("known")
 
     async def leaves(self, name: str) -> None:
-        """Tell when a node has gone."""
+        """Report when a node has left."""
         while name in self.get_node_names():
             self.create_rate(50).sleep()
         self.tell("gone")
@@ -188,13 +188,13 @@ def add(request: Any, response: Any) -> Any:
 
 
 async def never(request: Any, response: Any) -> Any:
-    """Take a request, and answer none."""
+    """Receive a request without answering it."""
     await Future()
     return response
 
 
 def main() -> None:
-    """Spin until stdin is closed, and end as a program of rclpy that is interrupted does."""
+    """Spin until stdin is closed, and end like an interrupted rclpy program."""
     rclpy.init()
     executor = MultiThreadedExecutor(4)
     peer = Peer()
@@ -207,7 +207,7 @@ def main() -> None:
 
 
 def shut_down_at_end() -> None:
-    """Let the executor end when stdin is closed."""
+    """End the executor when stdin is closed."""
     sys.stdin.read()
     rclpy.shutdown()
 

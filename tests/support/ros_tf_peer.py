@@ -1,7 +1,7 @@
-"""A program of plain rclpy for tests: it sends transforms, and prints those that it hears.
+"""A plain rclpy program for tests that sends transforms and prints those it receives.
 
-It uses the topics and profiles of tf2_ros. ``peer_base`` lies in ``peer_map`` on ``/tf``, again and
-again; ``peer_camera`` and ``peer_arm`` lie in ``peer_base`` on ``/tf_static``, said once.
+It uses the topics and profiles of tf2_ros. ``peer_base`` in ``peer_map`` is sent on ``/tf``
+repeatedly; ``peer_camera`` and ``peer_arm`` in ``peer_base`` on ``/tf_static`` once.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Peer(Node):
         self.create_timer(0.02, self.move)
 
     def placed(self, parent: str, child: str, x: float) -> Any:
-        """Return a transform of this moment."""
+        """Return a transform with the current time."""
         stamped = TransformStamped(child_frame_id=child)
         stamped.header.frame_id = parent
         stamped.header.stamp = self.get_clock().now().to_msg()
@@ -57,7 +57,7 @@ class Peer(Node):
         return stamped
 
     def move(self) -> None:
-        """Say where the base is."""
+        """Send the transform of the base."""
         self.moving.publish(TFMessage(transforms=[self.placed("peer_map", "peer_base", 1.0)]))
 
     def tell(self, topic: str, msg: Any) -> None:
@@ -69,7 +69,7 @@ class Peer(Node):
 
 
 def say(line: str) -> None:
-    """Print a line at once."""
+    """Print a line, and flush it."""
     sys.stdout.write(f"{line}\n")
     sys.stdout.flush()
 

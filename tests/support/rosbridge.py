@@ -1,4 +1,4 @@
-"""A client of rosbridge in the process of its gateway, without a socket."""
+"""A rosbridge client in the gateway's process, without a socket."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SMALL_FRAMES: Final = msgspec.structs.replace(
 
 
 class RosbridgeClient:
-    """What a page or program sends to rosbridge, and what it gets.
+    """Sends to rosbridge like a page or program, and receives from it.
 
     Attributes:
         session: Its session in the gateway.
@@ -79,7 +79,7 @@ class RosbridgeClient:
 
 @asynccontextmanager
 async def robot_of(node: Node, policy: Policy | None = None) -> AsyncIterator[Robot]:
-    """Yield what the sessions of a gateway share; by default only large frames are refused."""
+    """Yield the shared state of a gateway's sessions; by default only large frames are refused."""
     audit = Audit(node, "")
     async with asyncio.TaskGroup() as tasks:
         robot = Robot(node, policy or SMALL_FRAMES, audit, tasks)

@@ -1,7 +1,7 @@
-"""Describes message classes of rosidl's kind, to compare those of ROS with those of aionode.
+"""Describes rosidl's message classes, to compare those of ROS with those of aionode.
 
-Run as a program, by a Python that has ROS's packages, it describes ROS's: it reads ROS names from
-its standard input and writes the description as JSON.
+As a program, run by a Python with ROS's packages, it describes those of ROS: it reads ROS names
+from standard input and writes the description as JSON.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def type_report(type_: Any) -> list[Any]:
 
 
 def message_report(cls: Any) -> dict[str, Any]:
-    """Describe a message class and what its objects do."""
+    """Describe a message class and the behaviour of its objects."""
     fields = cls.get_fields_and_field_types()
     fresh = cls()
     constants = [name for name in dir(cls) if name.isupper() and name != "SLOT_TYPES"]
@@ -118,7 +118,7 @@ def message_report(cls: Any) -> dict[str, Any]:
 
 
 def assigned(cls: Any, field: str, value: Any, check: bool) -> str:
-    """Return what becomes of a value that is assigned to a field."""
+    """Return the result of assigning a value to a field."""
 
     def assign() -> list[Any]:
         message = cls(check_fields=check)

@@ -62,8 +62,8 @@ class Sample:
     Attributes:
         name: ROS name of its type.
         message: The message.
-        data: As aionode has to encode it.
-        others: As other implementations encode it: with arbitrary bytes as padding or at the end.
+        data: Its encoding by aionode.
+        others: Encodings by other implementations, with arbitrary bytes as padding or at the end.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""A program that uses a robot as a model's client does, but by a script: it needs no model.
+"""A program that uses a robot like a model's client, but follows a script instead of a model.
 
 ``python -m tests.support.scripted_model CONFIG`` reads the settings that such clients read.
 """

@@ -1,4 +1,4 @@
-"""Lets a test wait for calls within aionode, for states that no public call waits for."""
+"""Lets a test wait for calls within aionode, where no public call waits for a state."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["returns_of"]
 
 
 def returns_of(monkeypatch: pytest.MonkeyPatch, owner: object, name: str) -> asyncio.Queue[Any]:
-    """Return a queue that gets what a method of `owner` returns, from now on."""
+    """Return a queue that gets the results of a method of `owner` from now on."""
     returned = asyncio.Queue[Any]()
     method = getattr(owner, name)
 

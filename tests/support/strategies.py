@@ -62,22 +62,22 @@ def shipped_types() -> dict[str, Any]:
 
 
 def is_type(member: object) -> bool:
-    """Tell whether a member of a module is a class with a ROS name."""
+    """Return whether a member of a module is a class with a ROS name."""
     return isinstance(member, type) and bool(getattr(member, "__ros_type__", ""))
 
 
 @cache
 def message_classes() -> dict[str, type[Message]]:
-    """Return every message class of aionode, parts of services and actions included."""
+    """Return every message class of aionode, including parts of services and actions."""
     return {type_name(part): part for cls in shipped_types().values() for part in parts_of(cls)}
 
 
 @cache
 def various_classes() -> dict[str, type[Message]]:
-    """Return a tenth of all message classes, with each kind of field after each that it follows.
+    """Return a tenth of all message classes, with every pair of successive kinds of fields.
 
     The code for a class depends on the kinds of its fields and, by their alignment, on their order:
-    the other classes would show nothing new, and there are more of them with each package.
+    other classes would show nothing new, and each package adds more of them.
     """
     various: dict[str, type[Message]] = {}
     seen: set[tuple[object, object]] = set()
@@ -115,7 +115,7 @@ def any_messages(*, nan: bool = False) -> st.SearchStrategy[Any]:
 
 @cache  # hypothesis takes longer to make a strategy than to draw from it
 def messages(cls: type[Message], *, nan: bool = False) -> st.SearchStrategy[Any]:
-    """Return a strategy for messages of one class, in the forms that a reader gets.
+    """Return a strategy for messages of one class, in the forms that readers get.
 
     Args:
         cls: The class.
@@ -130,7 +130,7 @@ def messages(cls: type[Message], *, nan: bool = False) -> st.SearchStrategy[Any]
 
 @cache
 def weight(cls: Any) -> int:
-    """Return about how many values a random message of a class has."""
+    """Return the approximate number of values in a random message of a class."""
     return sum(
         (weight(field.type.nested) if field.type.nested else 1)
         * (1 if field.type.container == "single" else 2)

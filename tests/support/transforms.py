@@ -36,7 +36,7 @@ def transform(
 
 
 def senders(buffer: BufferCore) -> set[str]:
-    """Return who has sent the transforms of a buffer."""
+    """Return the senders of a buffer's transforms."""
     return set(re.findall("broadcaster: '(.*?)'", buffer.all_frames_as_yaml()))
 
 

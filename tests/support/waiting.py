@@ -1,4 +1,4 @@
-"""Waiting for what happens in a thread or process that sets no event."""
+"""Waits for what happens in a thread or process that sets no event."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ PERIOD_S = 0.002
 
 
 async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so; the processor is free for what brings it about."""
+    """Wait until a condition holds, without using the processor."""
     while not condition():  # noqa: ASYNC110  # there is no event
         await asyncio.sleep(PERIOD_S)  # noqa: TID251  # as above

@@ -1,4 +1,4 @@
-"""One client of a gateway for each way in: it asks for one thing, and says what became of it."""
+"""A client of a gateway for each protocol, which makes one request and reports its outcome."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Ask(NamedTuple):
     """What a client asks for.
 
     Attributes:
-        verb: What it wants to do, in the words of the policy.
-        name: With what; a parameter is ``/node:parameter``.
+        verb: What it wants to do, as in a policy.
+        name: The name; for a parameter, ``/node:parameter``.
         type_name: The name of the type; empty for a parameter.
-        values: What it sends.
-        is_done: Whether the robot shows that it was done, for ops that are not answered.
+        values: The values that it sends.
+        is_done: Returns whether the robot did it, for ops without an answer.
     """
 
     verb: str
@@ -41,11 +41,11 @@ class Ask(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What the client was told.
+    """The answer to the client.
 
     Attributes:
         refusal: Why it was refused; empty if it was not.
-        code: The word for programs, where the way in has one.
+        code: The code for programs, if the protocol has one.
     """
 
     refusal: str = ""
@@ -56,20 +56,20 @@ DONE: Final = Answer()
 
 
 class Way(Protocol):
-    """A client of one way in."""
+    """A client of one protocol."""
 
     async def do(self, asked: Ask) -> Answer:
-        """Ask for something, and wait until it is done or refused."""
+        """Make a request, and wait until it is done or refused."""
 
     async def names(self) -> set[str]:
-        """Return all that the client is shown: topics, services, actions, nodes, parameters."""
+        """Return all names shown to the client: topics, services, actions, nodes, parameters."""
 
 
 async def until(condition: Callable[[], Any]) -> Any:
-    """Wait until something is so, and return what the condition returns then.
+    """Wait until a condition holds, and return its value.
 
     Raises:
-        TimeoutError: it has not come about.
+        TimeoutError: it does not hold in time.
     """
     async with asyncio.timeout(PATIENCE_SEC):
         await waiting.until(condition)
@@ -85,7 +85,7 @@ class Frames:
         self._count = 0
 
     async def read(self) -> None:
-        """Take frames until it is cancelled."""
+        """Read frames until cancelled."""
         async for frame in self.socket:
             self.got.append(json.loads(frame) if isinstance(frame, str) else frame)
 
@@ -94,7 +94,7 @@ class Frames:
         await self.socket.send(json.dumps({"op": op, **fields}))
 
     def new_id(self) -> str:
-        """Return an id that no other op has."""
+        """Return an unused id."""
         self._count += 1
         return f"id{self._count}"
 
@@ -112,10 +112,10 @@ def has(frame: Any, fields: dict[str, Any]) -> bool:
 
 
 class Rosbridge(Frames):
-    """A client as roslibjs is one, which has asked to be told of errors."""
+    """A client like roslibjs that has requested status messages."""
 
     async def do(self, asked: Ask) -> Answer:
-        """Send the op for it."""
+        """Send the op for a request."""
         ops: dict[str, Callable[[Ask, str], Awaitable[Answer]]] = {
             "see": self._get,
             "subscribe": self._subscribe,
@@ -179,7 +179,7 @@ class Rosbridge(Frames):
         return answer["values"]
 
     async def names(self) -> set[str]:
-        """Ask each service of rosapi that lists something."""
+        """Call each service of rosapi that lists something."""
         lists = [
             (await self.rosapi(service))[field]
             for service, field in (
@@ -209,7 +209,7 @@ class Http:
     accepts = "application/json"
 
     async def do(self, asked: Ask) -> Answer:
-        """Send the request for it."""
+        """Send the HTTP request for it."""
         async with self.client.stream(**request_for(asked, self.accepts)) as response:
             return await self._answer(asked, response)
 
@@ -218,7 +218,7 @@ class Http:
         return answer_of(response)
 
     async def names(self) -> set[str]:
-        """Ask for each list, for the details of the nodes, for the document, and for metrics."""
+        """Get each list, the details of the nodes, the OpenAPI document, and the metrics."""
         found: set[str] = set()
         for kind in ("topics", "services", "actions"):
             found |= {each["name"] for each in await self.json(f"/{kind}")}
@@ -236,14 +236,14 @@ class Http:
         return found - {"/"}
 
     async def json(self, path: str) -> Any:
-        """Return what a path has."""
+        """Return the JSON at a path."""
         answer = await self.client.get(path)
         assert answer.status_code == 200, answer.text
         return answer.json()
 
 
 class Events(Http):
-    """A program that asks for server-sent events: of a topic, or of a goal."""
+    """A program that requests server-sent events of a topic or a goal."""
 
     accepts = "text/event-stream"
 
@@ -291,7 +291,7 @@ def answer_of(response: httpx.Response) -> Answer:
 
 
 class Foxglove(Frames):
-    """A client as Foxglove's application is one."""
+    """A client like Foxglove's application."""
 
     async def do(self, asked: Ask) -> Answer:
         """Send the frames for it."""
@@ -305,7 +305,7 @@ class Foxglove(Frames):
         return await ops[asked.verb](asked)
 
     def announced(self, op: str, field: str, key: str, name: str) -> Any:
-        """Return what the client was told of a topic or service."""
+        """Return what was announced of a topic or service."""
         items = (each for frame in self.got if has(frame, {"op": op}) for each in frame[field])
         return next((each for each in items if each[key] == name), None)
 
@@ -374,7 +374,7 @@ class Foxglove(Frames):
         return Answer(refusal["message"])
 
     async def names(self) -> set[str]:
-        """Take what was announced, the connection graph, and the parameters."""
+        """Return the names in announcements, the connection graph, and the parameters."""
         await self.send("subscribeConnectionGraph")
         await self.send("getParameters", parameterNames=[], id="all")
         graph = await until(lambda: self.first(op="connectionGraphUpdate"))
@@ -401,10 +401,10 @@ async def way_in(
     """Connect a client by one of `WAYS`.
 
     Args:
-        way: The way in.
+        way: The protocol.
         port: The port of the gateway, on this host.
-        headers: What the client shows of itself.
-        host: By which name it knows the gateway.
+        headers: The client's headers.
+        host: The name by which it addresses the gateway.
 
     Raises:
         InvalidStatus: a WebSocket is refused.

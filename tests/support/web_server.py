@@ -1,4 +1,4 @@
-"""A web server for the pages of a test: another origin than that of a gateway."""
+"""A web server for the pages of a test, with another origin than a gateway."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ async def web_server(files: Mapping[str, str | Path]) -> AsyncIterator[int]:
     """Serve files to a browser on loopback, and yield the port.
 
     Args:
-        files: What is served by the beginning of its path: a page as its text, a file, or a folder.
+        files: What is served, by the start of its path: the text of a page, a file, or a folder.
     """
 
     async def answer(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -41,7 +41,7 @@ async def web_server(files: Mapping[str, str | Path]) -> AsyncIterator[int]:
 
 
 def found(files: Mapping[str, str | Path], path: str) -> bytes | None:
-    """Return what is served for a path; None for nothing."""
+    """Return what is served for a path, or None."""
     for start, given in files.items():
         if isinstance(given, str):
             if path == start:

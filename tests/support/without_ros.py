@@ -1,4 +1,4 @@
-"""A process that is none of ROS: message packages and `rclpy` cannot be imported."""
+"""A process without ROS: message packages and `rclpy` cannot be imported."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def without_ros() -> Iterator[None]:
 
 
 def forget() -> None:
-    """Take the modules of ROS's packages out of this process."""
+    """Remove the modules of ROS's packages from this process."""
     for name in list(sys.modules):
         if name.partition(".")[0] in SUPPLIED | shipped_packages():
             del sys.modules[name]
