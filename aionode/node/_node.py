@@ -1041,9 +1041,9 @@ def direct_subscription(
         node: The node that subscribes.
         msg_type: A message class.
         topic: Name of the topic.
-        take: Called with the bytes (a list of parts if there are many), the sequence number, and
-            the times of publishing and arrival; see `Take`. It must not block or raise, as it may
-            be called inside the `publish` of a node.
+        take: Called with the bytes (a list of parts if there are many, and a memoryview if the
+            sender lends them), the sequence number, and the times of publishing and arrival; see
+            `Take`. It must not block or raise, as it may be called inside the `publish` of a node.
         qos_profile: A profile.
 
     Raises:

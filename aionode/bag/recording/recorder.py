@@ -469,7 +469,12 @@ class Recorder:
         self._paused = False
 
     def _take(
-        self, number: int, raw: Parts, sequence: int, source_ns: int, received_ns: int
+        self,
+        number: int,
+        raw: Parts | memoryview,
+        sequence: int,
+        source_ns: int,
+        received_ns: int,
     ) -> None:
         """Accept a message of a subscription, within the event that delivers it."""
         time_ns = self._now_ns() if self._use_sim_time else received_ns
@@ -485,6 +490,8 @@ class Recorder:
                 "clock showed them"
             )
         self._last_ns = time_ns
+        if isinstance(raw, memoryview):
+            raw = self._recording.owned(number, raw)
         size = sum(map(len, raw)) if isinstance(raw, list) else len(raw)
         self._recording.put(Row(number, time_ns, sent_ns, sequence, size, raw))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode._process.concurrency import run_in_thread, to_the_end
 from aionode.bag.files.losses import LOSSES, Lost, losses_text
@@ -13,12 +13,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
     from aionode.bag._writer import BagWriter
+    from aionode.bag.files.mcap_writer import Parts
     from aionode.bag.files.record import TopicInfo
     from aionode.endpoints.subscription import Subscription
 
 __all__ = ["Key", "Recording", "TopicStats", "summary_of"]
 
 Key = tuple[str, str, str]
+
+MOST_LENT: Final = 32 << 20
+"""Bytes that may wait for the disk in memory that other processes lend; beyond that, messages are
+copied. A process lends only so much, and sends the rest at a higher cost.
+"""
 
 
 class TopicStats(NamedTuple):
@@ -63,6 +69,7 @@ class Recording:
         self.numbers: dict[Key, int] = {}
         self.subscriptions: dict[int, Subscription[bytes]] = {}
         self._writer = writer
+        self._keeps = snapshot
         self._topics: list[tuple[TopicInfo, int]] = []
         self._taken: list[int] = []
         self._refused: list[int] = []
@@ -90,6 +97,13 @@ class Recording:
     def types_of(self, name: str) -> list[str]:
         """Return the types that a topic has in the bag."""
         return [info.type for info, _ in self._topics if info.name == name]
+
+    def owned(self, topic: int, lent: memoryview) -> Parts:
+        """Return a message in lent memory: a copy, unless it is written soon."""
+        latched_depth = self._topics[topic][1]
+        if self._keeps or latched_depth or self.thread.waiting_bytes > MOST_LENT:
+            return bytes(lent)
+        return [lent]
 
     def put(self, row: Row) -> None:
         """Pass a message to the thread; it is counted as lost if there is no room."""

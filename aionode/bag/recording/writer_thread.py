@@ -121,13 +121,16 @@ class WriterThread:
 
     # In the loop
 
+    @property
+    def waiting_bytes(self) -> int:
+        """The number of bytes that the thread has not taken yet."""
+        return self._put_bytes - self._taken_bytes
+
     def put(self, row: Row) -> bool:
         """Enqueue a row, and return whether there was room for it."""
         size = row.size
         waiting = len(self._rows)
-        if waiting and (
-            self._put_bytes - self._taken_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS
-        ):
+        if waiting and (self.waiting_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS):
             return False
         self._put_bytes += size
         self._rows.append(row)

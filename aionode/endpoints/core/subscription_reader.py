@@ -34,8 +34,8 @@ __all__ = [
     "Take",
 ]
 
-Parts = bytes | list[bytes | memoryview]
-"""A message as CDR bytes, or as a list of parts."""
+Parts = bytes | memoryview | list[bytes | memoryview]
+"""A message as CDR bytes, as a list of parts, or in memory that its sender lends (see `Reader`)."""
 
 Take = Callable[[Parts, int, int, int], None]
 """Takes a message, its sequence number, and the times of publication and reception, in nanoseconds

@@ -102,7 +102,11 @@ class Reader(Protocol):
 
     @property
     def raw(self) -> Raw:
-        """Whether `deliver` wants messages as CDR bytes; ``"parts"`` if parts are accepted too."""
+        """Whether `deliver` wants messages as CDR bytes.
+
+        ``"parts"`` accepts a list of parts too, and a memoryview of memory that the sender lends:
+        it cannot be reused before all views of it are gone.
+        """
 
     def deliver(
         self,

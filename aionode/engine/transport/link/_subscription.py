@@ -517,6 +517,8 @@ class LinkReader(ReaderRegistration):
 
     def decoder(self) -> Callable[[Data], Any]:
         """Return the function that decodes its messages."""
+        if self.raw == "parts":
+            return memory_or_bytes
         return bytes if self.raw else cdr.decoder(self._msg_type)
 
     def deliver(
@@ -576,6 +578,11 @@ class LinkReader(ReaderRegistration):
         for remote_publisher in self.remote_publishers.values():
             remote_publisher.close()
         self.remote_publishers.clear()
+
+
+def memory_or_bytes(payload: Data) -> memoryview | bytes:
+    """Return a payload without copying it."""
+    return payload if isinstance(payload, memoryview) else bytes(payload)
 
 
 def heard_from(
