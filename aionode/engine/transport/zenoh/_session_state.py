@@ -27,6 +27,7 @@ from aionode.engine.transport.zenoh.delivery.cancellations import Cancellations
 from aionode.engine.transport.zenoh.delivery.control_messages import ControlMessages
 from aionode.engine.transport.zenoh.delivery.peer_senders import PeerSenders
 from aionode.engine.transport.zenoh.delivery.request_room import RequestRoom
+from aionode.engine.transport.zenoh.delivery.shared_payload import SharedPayloads
 from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
 from aionode.engine.transport.zenoh.session.settings import FLUSH_S
 from aionode.engine.wire._key_expression import data_key
@@ -106,6 +107,7 @@ class SessionState:
         peer_senders: Send requests and replies.
         burst: Limits what the loop sends at once to readers that do not acknowledge.
         acknowledgements: The acknowledgements between contexts of aionode.
+        payloads: Large payloads that several subscriptions of this context receive.
         lingering: Destroyed publishers with unacknowledged messages; an ordered set.
         drops: Counts what is dropped of what others send.
         own_gids: The gids of this context's publishers, lingering ones included.
@@ -154,6 +156,7 @@ class SessionState:
             self.announced,
             self.control_messages,
         )
+        self.payloads = SharedPayloads()
         self.lingering: dict[LingeringWriter, None] = {}
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(

@@ -287,6 +287,25 @@ async def test_small_messages_stay_behind_a_large_one() -> None:
         )
 
 
+async def test_subscriptions_of_a_context_share_a_large_payload() -> None:
+    """A recorder and a gateway in one process: Zenoh would copy an image of 6 MB for each."""
+    async with (
+        two_contexts() as (ours, theirs),
+        quiet_node("sender", ours) as sender,
+        quiet_node("receiver", theirs) as receiver,
+    ):
+        publisher = sender.create_publisher(Image, "images", 10)
+        some = [receiver.create_subscription(Image, "images", None, 10, raw=True) for _ in range(2)]
+        await publisher.wait_for_subscribers(2)
+        payloads = []
+        for number in range(2):
+            publisher.publish(Image(data=bytes([number]) * 1_000_000))
+            payloads.append([await each.receive() for each in some])
+
+    assert all(first is second for first, second in payloads)
+    assert [first[-1] for first, _ in payloads] == [0, 1]
+
+
 async def test_keep_all_loses_nothing() -> None:
     """However fast the publisher: it is told to wait, and `drain` waits."""
     count = 12_000

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from aionode.engine.transport.reliability.submessage import Submessage
     from aionode.engine.transport.reliability.writer_proxy import WriterProxy
     from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.delivery.shared_payload import SharedPayload
     from aionode.graph import EndpointInfo
 
 __all__ = ["ZenohReader"]
@@ -100,6 +101,8 @@ class ZenohReader(Declaration):
             self._stateful = StatefulReader(
                 self.gid, self, perf_ns, span, has_history=self._transient
             )
+        # With other subscriptions of this context, while it is declared.
+        self._shared: SharedPayload | None = None
         self._proxies = {} if self._stateful is None else self._stateful.proxies
         # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
@@ -117,6 +120,7 @@ class ZenohReader(Declaration):
         """Declare the subscriber; a transient local one gets the history."""
         if self._stateful is not None:
             self.state.acknowledgements.add_reader(self._key, self.gid, self.receive_submessage)
+        self._shared = self.state.payloads.join(self._key)
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -145,6 +149,9 @@ class ZenohReader(Declaration):
         """Undeclare the subscriber."""
         if self._stateful is not None:
             self.state.acknowledgements.remove_reader(self._key, self.gid)
+        if self._shared is not None:
+            self._shared = None
+            self.state.payloads.leave(self._key)
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
@@ -168,7 +175,12 @@ class ZenohReader(Declaration):
             sequence = self._numbers.number(gid, sequence, by_target=by_target)
         if self._transient and gid in self.state.own_gids:
             return  # a late subscription also asks the publishers of its own context for history
-        payload = sample.payload.to_bytes()
+        shared = self._shared
+        payload = (
+            sample.payload.to_bytes()
+            if shared is None or shared.readers < 2 or fields is None
+            else shared.bytes_of((gid, fields[0], source_ns), sample.payload)
+        )
         proxy = self._proxies.get(gid)
         if proxy is None:
             if self._stateful is not None and not self._stateful.receive_early(gid, sequence):
