@@ -28,6 +28,7 @@ from aionode.endpoints.core.subscription_reader import (
     DirectReader,
     MessageInfo,
     SubscriptionReader,
+    size_of_raw,
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.transport.base import ReaderRegistration
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
         SubscriptionEvent,
         SubscriptionEventCallbacks,
     )
-    from aionode.engine.transport.base import Registration
+    from aionode.engine.transport.base import Raw, Registration
     from aionode.graph import EndpointInfo
 
 __all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
@@ -82,7 +83,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         time_base: TimeBase,
         *,
         concurrent: bool | int,
-        raw: bool,
+        raw: Raw,
         on_error: OnError,
         offload: bool,
         event_callbacks: SubscriptionEventCallbacks | None = None,
@@ -91,7 +92,7 @@ class Subscription(Endpoint, Generic[ItemT]):
     ) -> None:
         super().__init__(f"subscription of {setup.endpoint.name}", setup)
         self.msg_type = msg_type
-        self.raw = raw
+        self.raw = bool(raw)
         self.callback = callback or take
         self.stats = CallbackStats()
         self._registrations: list[Registration] = []  # one per transport
@@ -108,7 +109,7 @@ class Subscription(Endpoint, Generic[ItemT]):
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
         self._reader: SubscriptionReader
-        options: dict[str, bool] = {"raw": raw, "wants_info": wants == 2}
+        options: dict[str, Any] = {"raw": raw, "wants_info": wants == 2}
         if take is not None:
             self._reader = DirectReader(setup.endpoint, self.stats, time_base, take)
         elif setup.causes is not None:
@@ -117,7 +118,7 @@ class Subscription(Endpoint, Generic[ItemT]):
             )
         else:
             self._reader = SubscriptionReader(setup.endpoint, self.stats, time_base, **options)
-        size_of = len if raw else memory_size(msg_type)
+        size_of = size_of_raw if raw else memory_size(msg_type)
         if size_of is not None:
             self._reader.weigh_messages(
                 size_of, setup.queue_bytes, partial(report_heavy, setup, "dropped")

@@ -49,13 +49,13 @@ from aionode.parameter import declare_qos_overrides, declare_struct
 from aionode.parameter.methods import ParameterMethods
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Awaitable, Callable, Sequence
     from types import TracebackType
 
     from aionode.action import ActionClient, ActionServer, ServerGoalHandle
     from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints.core.callback_runner import OnError
-    from aionode.endpoints.core.subscription_reader import Take
+    from aionode.endpoints.core.subscription_reader import MessageInfo, Parts, Take
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from aionode.endpoints.service import ServiceCallback
     from aionode.endpoints.subscription import SubscriptionCallback
@@ -1062,6 +1062,38 @@ def direct_subscription(
         on_error="raise",
         offload=False,
         take=take,
+    )
+    return add_subscription(core, subscription)
+
+
+def parts_subscription(
+    node: Node,
+    msg_type: type[Any],
+    topic: str,
+    callback: Callable[[Parts, MessageInfo], Awaitable[None] | None],
+    qos_profile: QoSProfile,
+    event_callbacks: SubscriptionEventCallbacks,
+) -> Subscription[Parts]:
+    """Create a subscription that passes CDR bytes to `callback` as they arrive; see `Parts`.
+
+    Its errors are logged. The arguments are those of `Node.create_subscription`.
+
+    Raises:
+        InvalidTopicNameException: `topic` is invalid (a ValueError).
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    """
+    core = core_of(node)
+    core.refuse_if_destroyed("subscription")
+    subscription: Subscription[Parts] = Subscription(
+        endpoint_setup(node, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile),
+        msg_type,
+        callback,
+        core.context.time_base,
+        concurrent=False,
+        raw="parts",
+        on_error="log",
+        offload=False,
+        event_callbacks=event_callbacks,
     )
     return add_subscription(core, subscription)
 

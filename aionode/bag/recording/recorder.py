@@ -15,6 +15,7 @@ from aionode.bag.recording.recording import Key, Recording, TopicStats, summary_
 from aionode.bag.recording.services import RecorderServices
 from aionode.bag.recording.writer_thread import Row
 from aionode.clock import Clock, ClockType, Time
+from aionode.endpoints.core.subscription_reader import size_of_raw
 from aionode.engine.wire import cdr
 from aionode.errors import BagError, InterfaceNotFoundError, TimeSourceChangedError
 from aionode.graph import TOPIC_KINDS, EndpointKind
@@ -492,7 +493,7 @@ class Recorder:
         self._last_ns = time_ns
         if isinstance(raw, memoryview):
             raw = self._recording.owned(number, raw)
-        size = sum(map(len, raw)) if isinstance(raw, list) else len(raw)
+        size = size_of_raw(raw)
         self._recording.put(Row(number, time_ns, sent_ns, sequence, size, raw))
 
     def _warn(self, text: str) -> None:

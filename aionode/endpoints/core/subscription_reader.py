@@ -32,10 +32,17 @@ __all__ = [
     "Parts",
     "SubscriptionReader",
     "Take",
+    "size_of_raw",
 ]
 
 Parts = bytes | memoryview | list[bytes | memoryview]
 """A message as CDR bytes, as a list of parts, or in memory that its sender lends (see `Reader`)."""
+
+
+def size_of_raw(raw: Parts) -> int:
+    """Return the size of a message in bytes."""
+    return sum(map(len, raw)) if isinstance(raw, list) else len(raw)
+
 
 Take = Callable[[Parts, int, int, int], None]
 """Takes a message, its sequence number, and the times of publication and reception, in nanoseconds

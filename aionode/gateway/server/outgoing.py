@@ -39,9 +39,9 @@ class Framing:
 
     def __init__(self) -> None:
         self._frame: Frame | None = None
-        self._parts: tuple[bytes, ...] = ()
+        self._parts: tuple[bytes | memoryview, ...] = ()
 
-    def parts(self, frame: Frame) -> tuple[bytes, ...]:
+    def parts(self, frame: Frame) -> tuple[bytes | memoryview, ...]:
         """Return the bytes to send: one part, or a header and the parts of a large payload."""
         if frame is not self._frame:
             self._parts = framed(frame)
@@ -49,7 +49,7 @@ class Framing:
         return self._parts
 
 
-def framed(frame: Frame) -> tuple[bytes, ...]:
+def framed(frame: Frame) -> tuple[bytes | memoryview, ...]:
     """Return a WebSocket frame with its header, which is separate for a large payload."""
     if isinstance(frame, LongFrame):
         return (head(TEXT if frame.is_text else BINARY, len(frame)), *frame.pieces)
@@ -91,7 +91,7 @@ class Outgoing:
         self._turn: asyncio.Handle | None = None
         self.on_abort: Callable[[], object] = bool
 
-    def send(self, parts: tuple[bytes, ...]) -> None:
+    def send(self, parts: tuple[bytes | memoryview, ...]) -> None:
         """Send a frame, while `writable` is set."""
         self._transport.write(parts[0])
         if len(parts) > 1:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable
+from collections.abc import Awaitable, Callable, Hashable
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+import numpy as np
+
+from aionode._process.concurrency import run_in_thread
+from aionode.endpoints.core.subscription_reader import size_of_raw
 from aionode.endpoints.events import SubscriptionEventCallbacks
 from aionode.engine.wire import cdr
 from aionode.graph import EndpointKind
+from aionode.node import parts_subscription
 from aionode.qos import (
     DurabilityPolicy,
     QoSProfile,
@@ -18,10 +23,10 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
+    from aionode.endpoints.core.subscription_reader import Parts
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.graph import EndpointInfo
     from aionode.node import Node
-
 __all__ = ["Feed", "Feeds", "Received"]
 
 T = TypeVar("T")
@@ -39,6 +44,10 @@ MOST_LATCHED_BYTES: Final = 32 << 20
 """Most bytes of these messages, though the last one is always kept."""
 
 
+BESIDE_BYTES: Final = 1 << 20
+"""Size from which a message is copied in a thread: at once, it would block the loop for long."""
+
+
 class Received:
     """A message of a topic, shared by all clients: decoded once, and encoded once for each format.
 
@@ -48,7 +57,7 @@ class Received:
         message_class: The class of its messages.
         time_ns: When it arrived, in nanoseconds since 1970.
         source_ns: When it was published, in nanoseconds since 1970; 0 if unknown.
-        raw: Its CDR bytes, with their header.
+        raw: Its CDR bytes, with their header, in memory of this process.
     """
 
     __slots__ = ("_kinds", "_message", "message_class", "raw", "source_ns", "time_ns", "topic",
@@ -120,7 +129,7 @@ class Feed:
         self._latched: dict[bytes, deque[Received]] = {}
         self._depths: dict[bytes, int] = {}
         self._offered: dict[bytes, QoSProfile] = {}
-        self._subscription: Subscription[bytes] | None = None
+        self._subscription: Subscription[Parts] | None = None
         self._unwatch = node.graph.watch(EndpointKind.PUBLISHER, topic, self._note_publisher)
         self._subscribe()
 
@@ -181,17 +190,32 @@ class Feed:
             self._subscription.destroy()
         # A new publisher's different QoS is no mistake: the feed subscribes again for it.
         ignore = None if self._wanted is not None else ignore_incompatible_qos
-        self._subscription = self._node.create_subscription(
+        self._subscription = parts_subscription(
+            self._node,
             self.message_class,
             self.topic,
             self._take,
             self._profile(),
-            raw=True,
-            on_error="log",
-            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=ignore),
+            SubscriptionEventCallbacks(incompatible_qos=ignore),
         )
 
-    def _take(self, raw: bytes, info: MessageInfo) -> None:
+    def _take(self, raw: Parts, info: MessageInfo) -> Awaitable[None] | None:
+        """Take a message; the next one waits until a large one is copied, in a thread.
+
+        Its sender may be waiting for the memory, which a client could occupy for long.
+        """
+        if isinstance(raw, bytes):
+            self._accept(raw, info)
+        elif size_of_raw(raw) < BESIDE_BYTES:
+            self._accept(b"".join(raw) if isinstance(raw, list) else bytes(raw), info)
+        else:
+            return self._copy_and_accept(raw, info)
+        return None
+
+    async def _copy_and_accept(self, raw: Parts, info: MessageInfo) -> None:
+        self._accept(await run_in_thread(joined, raw), info)
+
+    def _accept(self, raw: bytes | memoryview, info: MessageInfo) -> None:
         self.received += 1
         received = Received(
             self.topic,
@@ -211,6 +235,19 @@ class Feed:
                 kept.popleft()
         for taker in tuple(self._takers.values()):
             taker(received)
+
+
+def joined(raw: Parts) -> memoryview:
+    """Return a copy of a message, in one piece.
+
+    It is made by numpy, which lets other threads run meanwhile.
+    """
+    copy: Any = np.empty(size_of_raw(raw), np.uint8)
+    end = 0
+    for part in raw if isinstance(raw, list) else [raw]:
+        begin, end = end, end + len(part)
+        copy[begin:end] = np.frombuffer(part, np.uint8)
+    return memoryview(copy).toreadonly()
 
 
 def ignore_incompatible_qos(info: object) -> None:

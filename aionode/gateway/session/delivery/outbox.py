@@ -20,7 +20,7 @@ class LongFrame:
 
     __slots__ = ("_size", "is_text", "pieces")
 
-    def __init__(self, pieces: Sequence[bytes], *, is_text: bool) -> None:
+    def __init__(self, pieces: Sequence[bytes | memoryview], *, is_text: bool) -> None:
         self.pieces = tuple(pieces)
         self.is_text = is_text
         self._size = sum(map(len, self.pieces))
@@ -43,11 +43,8 @@ LONG_BYTES: Final = 256 << 10
 
 
 def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
-    """Return a frame of a header and data; long bytes are not copied.
-
-    A memory view is copied: its memory may belong to others, who wait for it.
-    """
-    if type(data) is bytes and len(data) > LONG_BYTES:
+    """Return a frame of a header and data, which must not change; long data are not copied."""
+    if len(data) > LONG_BYTES:
         return LongFrame((head, data), is_text=False)
     return b"".join((head, data))
 
