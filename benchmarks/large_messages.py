@@ -87,7 +87,7 @@ class Meter:
             run(handle)
             self._longest_ns = max(self._longest_ns, time.thread_time_ns() - began_ns)
 
-        asyncio.Handle._run = timed  # type: ignore[method-assign]  # noqa: SLF001
+        asyncio.Handle._run = timed  # type: ignore[assignment,method-assign]  # noqa: SLF001
 
     def count(self, _: Image) -> None:
         """Count an image; the first ones do not count."""

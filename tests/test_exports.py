@@ -62,7 +62,7 @@ PRESETS = [
 WITHIN = {
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
     "aionode.endpoints.timer": {"to_period_ns"},  # for nodes
-    "aionode.node": {"direct_subscription"},  # for recorders
+    "aionode.node": {"direct_subscription", "parts_subscription"},  # for recorders and gateways
     "aionode.transport.link": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
 }
 """Names that only aionode itself uses, although their module is public."""
