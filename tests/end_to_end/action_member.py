@@ -1,12 +1,12 @@
-"""One end of an action for tests, in a process of its own; it tells on stdout what happens.
+"""One end of an action for tests, in a process of its own; it prints what happens.
 
-``python tests/end_to_end/action_member.py server`` serves /count and tells ``open``, ``executing``,
-``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
-sizes of its tables. ``… server cancel`` cancels the goals of lost clients. ``… client STEPS``
-sends one goal of so many steps and tells ``open``, ``ready``, ``accepted``, ``feedback N``,
-``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``. ``… blocked`` sends a goal that
-does not end, tells ``blocks``, and blocks its loop. ``… impatient SECONDS`` calls with a goal that
-does not end, leaves the call after so many seconds, as anyio and web servers do, and ends at once.
+``python tests/end_to_end/action_member.py server`` serves /count and prints ``open``,
+``executing`` and ``ended STATUS``; for a word on stdin it prints ``WORD GOALS RESULTS REQUESTS``,
+the sizes of its tables. ``… server cancel`` cancels the goals of lost clients. ``… client STEPS``
+sends one goal of that many steps and prints ``open``, ``ready``, ``accepted``, ``feedback N``,
+``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``. ``… blocked`` sends an endless
+goal, prints ``blocks``, and blocks its loop. ``… impatient SECONDS`` calls with an endless goal,
+abandons the call after that many seconds, as anyio and web servers do, and ends at once.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def tell(*words: object) -> None:
 
 
 class Counter(Node):
-    """Counts as far as a goal asks for; fails on the way to 13."""
+    """Counts as far as a goal requests; fails on the way to 13."""
 
     def __init__(self) -> None:
         super().__init__("counter", enable_rosout=False, start_parameter_services=False)
@@ -66,7 +66,7 @@ class Counter(Node):
         return Fibonacci.Result(sequence=[goal.request.order])
 
     async def obey(self) -> None:
-        """Tell the sizes of the tables when asked."""
+        """Print the sizes of the tables on request."""
         lines: asyncio.Queue[str] = asyncio.Queue()
         loop = asyncio.get_running_loop()
         loop.add_reader(sys.stdin, lambda: lines.put_nowait(sys.stdin.readline()))
@@ -82,14 +82,14 @@ class Counter(Node):
 
 
 async def serve() -> None:
-    """Be the server, until a signal comes."""
+    """Run as the server until a signal."""
     async with Counter() as node:
         tell("open")
         await node.obey()
 
 
 async def ask() -> None:
-    """Be the client of one goal."""
+    """Run as the client of one goal."""
     async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
         tell("open")
         client = node.create_action_client(Fibonacci, "/count")
@@ -108,7 +108,7 @@ async def ask() -> None:
 
 
 async def leave() -> None:
-    """Be a client that does not wait for the end of its goal."""
+    """Run as a client that does not wait for the end of its goal."""
     async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
         client = node.create_action_client(Fibonacci, "/count")
         await client.wait_for_server()
@@ -117,7 +117,7 @@ async def leave() -> None:
 
 
 async def block() -> None:
-    """Be a client whose loop is blocked by a callback."""
+    """Run as a client whose loop is blocked by a callback."""
     async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
         client = node.create_action_client(Fibonacci, "/count")
         await client.wait_for_server()

@@ -1,4 +1,4 @@
-"""Fixtures of tests with several processes."""
+"""Fixtures for tests with several processes."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from tests.support.peers import isolated_environment
 
 @pytest.fixture(autouse=True)
 def isolated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes started in a test hear each other, and nothing else that runs on the machine."""
+    """Processes started in a test communicate with each other, and with nothing else here."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)

@@ -3,7 +3,7 @@
 ``python tests/end_to_end/flow_member.py ROLE NAME [COUNT [SIZE]]``. Lines on stdout are ``open``,
 ``matched``, ``sent N``, ``heard N`` or ``wrong TEXT``, and ``answered N``. A line ``gap`` on stdin
 is answered with ``gap MILLISECONDS``, the longest time that the loop stood still since the last
-question, and ``count`` with ``count N``; ``pause SECONDS`` makes a reader take nothing for so long.
+question, and ``count`` with ``count N``; ``pause SECONDS`` stops a reader for that time.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def tell(*words: object) -> None:
 
 
 class Member(Node):
-    """One that does what its role says."""
+    """A participant that plays its role."""
 
     def __init__(self, role: str, name: str, count: int, size: int) -> None:
         super().__init__(f"{role}_{name}", enable_rosout=False, start_parameter_services=False)
@@ -54,7 +54,7 @@ class Member(Node):
         return QoSProfile(depth=self.count or 10)
 
     def make_keeper(self) -> Any:
-        """A KEEP_ALL publisher, which says something else besides to the same process."""
+        """A KEEP_ALL publisher, and another one to the same process."""
         self.side = self.create_publisher(String, "side", 10)
         return self.create_publisher(String, self.topic, self.profile(keep_all=True))
 
@@ -66,7 +66,7 @@ class Member(Node):
     make_quitter = make_keeper
 
     def make_reader(self) -> Any:
-        """A KEEP_ALL subscription, and one to what is said besides."""
+        """A KEEP_ALL subscription, and one to the other publisher."""
         self.create_subscription(String, "side", lambda _: None, 10)
         return self.create_subscription(String, self.topic, None, self.profile(keep_all=True))
 
@@ -79,13 +79,13 @@ class Member(Node):
         return self.create_service(GetParameters, self.topic, self.get)
 
     def make_client(self) -> Any:
-        """A client that calls on and on, many at once."""
+        """A client that calls continuously, many at once."""
         return self.create_client(GetParameters, self.topic)
 
     make_caller = make_client
 
     def get(self, request: GetParameters.Request) -> GetParameters.Response:
-        """Answer with as much as was asked."""
+        """Answer with the requested size."""
         self.seen += 1
         return GetParameters.Response(values=[ParameterValue(string_value=request.names[0])])
 
@@ -100,7 +100,7 @@ class Member(Node):
     # What each does
 
     async def work_keeper(self) -> None:
-        """Send everything, and wait where there is no room."""
+        """Send everything, and wait when there is no room."""
         await self.endpoint.wait_for_subscribers()
         tell("matched")
         for number in range(self.count):
@@ -130,14 +130,14 @@ class Member(Node):
         tell("sent", self.count, self.endpoint.stats.dropped)
 
     async def work_ticker(self) -> None:
-        """Send on and on, two hundred a second."""
+        """Send continuously, two hundred messages a second."""
         while True:
             self.endpoint.publish(self.message(self.seen))
             self.seen += 1
             await asyncio_sleep(0.005)
 
     async def work_reader(self) -> None:
-        """Read everything, and see that it is in order."""
+        """Read everything, and check the order."""
         async for msg in self.endpoint:
             number = int(msg.data.split(" ", 1)[0])
             if number != self.seen:
@@ -150,7 +150,7 @@ class Member(Node):
                 await asyncio_sleep(pause_s)
 
     async def work_lister(self) -> None:
-        """Count what comes."""
+        """Count what arrives."""
         async for _ in self.endpoint:
             self.seen += 1
             if self.seen == self.count:
@@ -160,7 +160,7 @@ class Member(Node):
         """Answer by the callback."""
 
     async def work_client(self) -> None:
-        """Keep some hundreds of calls under way, each for a second at most."""
+        """Keep some hundreds of calls pending, each for a second at most."""
         await self.endpoint.wait_for_service()
         tell("matched")
 
@@ -177,7 +177,7 @@ class Member(Node):
                 tasks.create_task(call_on())
 
     async def work_caller(self) -> None:
-        """Call many times at once, and tell how each ended."""
+        """Call many times at once, and print how each ended."""
         await self.endpoint.wait_for_service()
         tell("matched")
         ends = await asyncio.gather(

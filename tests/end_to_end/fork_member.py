@@ -1,4 +1,4 @@
-"""Forks while its node runs, and tells whether both processes live on. Its argument says how."""
+"""Forks while its node runs, and prints whether both processes go on. Its argument says how."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ async def run(node: Node) -> None:
 
 
 def attempt(action: Callable[[], object]) -> None:
-    """Tell what comes of it."""
+    """Print the result of an attempt."""
     try:
         action()
     except AionodeError as error:
@@ -46,7 +46,7 @@ def attempt(action: Callable[[], object]) -> None:
 
 
 async def in_child(action: Callable[[], object]) -> None:
-    """Do something in a forked child, and tell how it ended."""
+    """Run an action in a forked child, and print how it ended."""
     child = FORK.Process(target=attempt, args=(action,))
     child.start()
     await asyncio.to_thread(child.join, CHILD_S)
@@ -61,7 +61,7 @@ def square(number: int) -> int:
 
 
 async def fork(how: str, node: Node) -> None:
-    """Do what the argument says."""
+    """Fork as the argument says."""
     publisher = node.create_publisher(Int32, "other", 10)
     actions: dict[str, Callable[[], object]] = {
         "nothing": gc.collect,
@@ -92,7 +92,7 @@ async def fork(how: str, node: Node) -> None:
 
 
 async def main(how: str) -> None:
-    """Fork, and then go on."""
+    """Fork, and continue."""
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with Context.as_default(node.context):
             other = quiet_node("other", Context(link=True))

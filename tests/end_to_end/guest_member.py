@@ -1,7 +1,7 @@
-"""A program that has much of its own, and goes on after `aionode.run`.
+"""A program with its own resources, which goes on after `aionode.run`.
 
-``python tests/end_to_end/guest_member.py FOLDER END`` tells ``runs``, ends by a signal, by a
-``failure`` of a callback or by a ``return``, and tells ``as before`` if all is as it was.
+``python tests/end_to_end/guest_member.py FOLDER END`` prints ``runs``, ends by a signal, by a
+``failure`` of a callback or by a ``return``, and prints ``as before`` if nothing has changed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def tell(text: str) -> None:
 
 
 class Program(Node):
-    """Hears itself, and ends as it is told to."""
+    """Receives its own messages, and ends as specified."""
 
     def __init__(self, end: str) -> None:
         super().__init__("program")

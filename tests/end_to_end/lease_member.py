@@ -1,11 +1,11 @@
 """A robot for tests whose commander holds a lease.
 
 ``python tests/end_to_end/lease_member.py commander TTL WHAT`` publishes 1.0 on /speed every 20 ms
-in a lease of TTL seconds, with the stop 0.0, and tells ``driving``. When a line comes, it does
+in a lease of TTL seconds, with the stop 0.0, and prints ``driving``. After a line on stdin, it does
 WHAT: ``sleep`` and ``spin`` block its event loop for 2 s, ``fork`` ends the lease in a forked
-child, ``orphan`` ends the loop without ending the block, ``hang`` blocks the loop for ever. Then it
-tells ``blocked``. It tells the name of the error that ends the block, and does not end.
-``… wheels`` tells ``speed VALUE`` for each message on /speed.
+child, ``orphan`` ends the loop without ending the block, ``hang`` blocks the loop forever. Then it
+prints ``blocked``. It prints the name of the error that ends the block, and does not end.
+``… wheels`` prints ``speed VALUE`` for each message on /speed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def tell(*words: object) -> None:
 
 
 class Wheels(Node):
-    """Tells what they are commanded."""
+    """Prints its commands."""
 
     def __init__(self) -> None:
         super().__init__("wheels")
@@ -50,7 +50,7 @@ def block(what: str) -> None:
 
 
 async def drive(lease: CommandLease[Float64], what: str) -> None:
-    """Publish commands, and do `what` when a line comes."""
+    """Publish commands, and do `what` after a line on stdin."""
     line = threading.Thread(target=sys.stdin.readline, daemon=True)
     line.start()
     for count in range(10_000):
@@ -71,7 +71,7 @@ async def drive(lease: CommandLease[Float64], what: str) -> None:
 
 
 def fork(lease: CommandLease[Float64]) -> None:
-    """Fork a child, which tells what it may do."""
+    """Fork a child, which prints what it is allowed to do."""
     child = os.fork()
     if child:
         os.waitpid(child, 0)
@@ -102,7 +102,7 @@ async def command(ttl_sec: float, what: str) -> None:
 
 
 def orphan(ttl_sec: float, what: str) -> None:
-    """Leave the block, and everything else, to the end of the process."""
+    """Leave the end of the block, and everything else, to the end of the process."""
     loop = asyncio.new_event_loop()
     task = loop.create_task(command(ttl_sec, what))
     loop.run_forever()

@@ -1,9 +1,9 @@
-"""A program that manages nodes and knows only the wire format: Zenoh and its own CDR, no aionode.
+"""A manager of nodes that knows only the wire format: Zenoh and its own CDR, without aionode.
 
-It drives nodes that `test_lifecycle` runs through every transition, error and refusal, and compares
-what they answer and publish with the tables of `rcl_lifecycle`. Two services of the test, which
-have the type of `change_state` too, tell the callbacks what to do, and check what was called. It
-prints each step, and ends with an error if anything is different.
+It takes the nodes of `test_lifecycle` through every transition, error and refusal, and compares
+their answers and messages with the tables of `rcl_lifecycle`. Two services of the test, also of the
+type of `change_state`, tell the callbacks what to do, and check what was called. It prints each
+step, and exits with an error if anything differs.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def say(text: str) -> None:
 
 
 class Reading:
-    """Values in the order in which they are serialized."""
+    """Reads values in the order in which they are serialized."""
 
     def __init__(self, data: bytes) -> None:
         assert data[:4] == b"\0\1\0\0", data[:4]
@@ -112,7 +112,7 @@ class Reading:
         return self.data[self.at - size : self.at - 1].decode()
 
     def state(self) -> int:
-        """Return the next lifecycle_msgs/msg/State, whose label has to fit."""
+        """Return the next lifecycle_msgs/msg/State, whose label has to match."""
         number, label = self.take("B"), self.text()
         assert STATES[number] == label, (number, label)
         return number
@@ -164,7 +164,7 @@ class Peer:
         raise AssertionError(f"{node} has not all of {names}")
 
     def data_key(self, chunks: list[str]) -> str:
-        """Return the key of a topic or service, whose type and hash its token tells."""
+        """Return the key of a topic or service, with type and hash from its token."""
         return f"{DOMAIN}/{chunks[9].replace('%', '/').strip('/')}/{chunks[10]}/{chunks[11]}"
 
     def begin(self, key: str, request: bytes) -> queue.SimpleQueue[Any]:
@@ -201,7 +201,7 @@ SERVICES = (
 
 
 class Managed:
-    """One managed node, by its services and its topic."""
+    """One managed node, through its services and its topic."""
 
     def __init__(self, peer: Peer, name: str) -> None:
         self.peer = peer
@@ -220,7 +220,7 @@ class Managed:
         return self.peer.end(self.peer.begin(self.keys[service], request))
 
     def state(self) -> int:
-        """Return what `get_state` answers."""
+        """Return the answer of `get_state`."""
         return self.call("get_state").state()
 
     def transitions(self, service: str) -> list[tuple[int, str, int, int]]:
@@ -229,15 +229,15 @@ class Managed:
         return [(*reply.transition(), reply.state(), reply.state()) for _ in range(reply.take("I"))]
 
     def begin(self, label: str = "", number: int = 0) -> queue.SimpleQueue[Any]:
-        """Ask for a transition."""
+        """Request a transition."""
         return self.peer.begin(self.keys["change_state"], change_request(number, label))
 
     def change(self, label: str = "", number: int = 0) -> bool:
-        """Ask for a transition, and return whether that succeeded."""
+        """Request a transition, and return whether it succeeded."""
         return bool(self.peer.end(self.begin(label, number)).take("B"))
 
     def take_events(self, count: int) -> list[tuple[int, int]]:
-        """Wait for so many events; return start and goal of each."""
+        """Wait for a number of events; return start and goal of each."""
         found = []
         for _ in range(count):
             sample = self.peer.events.get(timeout=PATIENCE_S)
@@ -249,19 +249,19 @@ class Managed:
         return found
 
     def expect_events(self, start: int, *states: int) -> None:
-        """Wait for the events of these state changes, after which there is no other event."""
+        """Expect the events of these state changes, and no further event."""
         assert self.take_events(len(states)) == list(itertools.pairwise((start, *states)))
         assert self.peer.events.empty()
 
     def expect_state(self, state: int) -> None:
-        """Expect what the node tells about itself in this state."""
+        """Expect the node's answers in this state."""
         assert self.state() == state
         available = [one for one in TRANSITIONS if one[2] == state]
         assert self.transitions("get_available_transitions") == available
         assert self.transitions("get_transition_graph") == TRANSITIONS
 
     def expect_refused(self, requests: Iterable[tuple[str, int]]) -> None:
-        """Make requests, many at a time; expect that each is refused, and changes nothing."""
+        """Make many requests at a time; expect that each is refused and changes nothing."""
         state = self.state()
         waiting = list(requests)
         while waiting:
@@ -274,7 +274,7 @@ class Managed:
 
 
 class Stage:
-    """The nodes of the test: one at a time, and a new one after that has been finalized."""
+    """The nodes of the test: one at a time, and a new one after one was finalized."""
 
     def __init__(self, peer: Peer) -> None:
         self.peer = peer
@@ -289,14 +289,14 @@ class Stage:
         return bool(self.peer.end(self.peer.begin(key, change_request(0, text))).take("B"))
 
     def new_node(self) -> Managed:
-        """Replace the node by a new one, which is unconfigured."""
+        """Replace the node by a new, unconfigured one."""
         self.count += 1
         name = f"managed_{self.count}"
         assert self.tell(self.key, f"node={name}")
         return Managed(self.peer, name)
 
     def begin(self, start: int, **script: str) -> Managed:
-        """Bring a node to a primary state; there its callbacks do what the script says."""
+        """Bring a node to a primary state, where its callbacks follow the script."""
         if self.node.state() == 4:
             self.node = self.new_node()
         assert self.tell(self.key, "")  # on the way all callbacks succeed
@@ -316,7 +316,7 @@ class Stage:
 
 
 def goal_of(state: int, result: str) -> int:
-    """Return where the result of a callback leads."""
+    """Return the state to which the result of a callback leads."""
     label = f"transition_{result.lower()}"
     return next(one[3] for one in TRANSITIONS if one[1:3] == (label, state))
 
@@ -336,7 +336,7 @@ HANDLINGS = {"ERROR": list(RESULTS), "RAISE": ["SUCCESS", "FAILURE", "ERROR", "R
 
 
 def make_transitions(stage: Stage) -> None:
-    """From each state each transition, with all a callback may do, and in `on_error` as well."""
+    """Make each transition from each state, with every result of callbacks and of `on_error`."""
     for number, label, start, running in REQUESTS:
         for does, result in RESULTS.items():
             for handles in HANDLINGS.get(does, ["SUCCESS"]):
@@ -354,7 +354,7 @@ def make_transitions(stage: Stage) -> None:
 
 
 def name_transitions(stage: Stage) -> None:
-    """A label is enough, and it wins over any number."""
+    """A label is enough, and takes precedence over any id."""
     for number, label, start, running in REQUESTS:
         for misleading in (0, 200, number, number % 7 + 1):
             say(f"{STATES[start]}: {label!r} [{misleading}]")
@@ -364,7 +364,7 @@ def name_transitions(stage: Stage) -> None:
 
 
 def refuse_in_primary_states(stage: Stage) -> None:
-    """All numbers and labels that are not available, with and without a number that is."""
+    """All unavailable ids and labels are refused, also a label with an available id."""
     for start in (1, 2, 3, 4):
         say(f"{STATES[start]}: refusals")
         node = stage.begin(start if start < 4 else 1)
@@ -389,7 +389,7 @@ def refuse_in_primary_states(stage: Stage) -> None:
 
 
 def refuse_in_transition(node: Managed) -> None:
-    """In a transition state only a shutdown can be requested, and how the callback is to end."""
+    """In a transition state, only a shutdown or the callback's result can be requested."""
     available = [one for one in TRANSITIONS if one[2] == node.state()]
     ends = [] if node.state() == 15 else available[1:]  # failure and error
     numbers = {5, 6, 7, *(one[0] for one in ends)}
@@ -401,7 +401,7 @@ def refuse_in_transition(node: Managed) -> None:
 
 
 def end_transitions(stage: Stage) -> None:
-    """End each transition while its callback runs, in each way in which that can be requested."""
+    """End each transition while its callback runs, in each possible way."""
     for number, label, start, running in REQUESTS:
         ends = [one for one in TRANSITIONS if one[2] == running][1:]
         requests = [request for end in ends for request in (("", end[0]), (end[1], 0))]
@@ -449,7 +449,7 @@ def end_error_processing(stage: Stage) -> None:
 
 
 def resist(stage: Stage) -> None:
-    """A callback that handles its cancellation decides itself how the transition ends."""
+    """A callback that handles its cancellation determines how the transition ends."""
     for number, label, start, running in REQUESTS:
         for does, result in (("KEEP", "SUCCESS"), ("SPOIL", "ERROR")):
             say(f"{STATES[running]}: {does}")
@@ -467,7 +467,7 @@ def resist(stage: Stage) -> None:
 
 
 def manage(stage: Stage) -> None:
-    """Take nodes through everything."""
+    """Take nodes through all steps."""
     states = stage.node.call("get_available_states")
     assert [states.state() for _ in range(states.take("I"))] == list(STATES)
     for part in (
@@ -484,7 +484,7 @@ def manage(stage: Stage) -> None:
 
 
 def hurry(node: Managed, count: int) -> None:
-    """Make so many transitions one after the other, each with its two events."""
+    """Make a number of transitions in a row, each with its two events."""
     began = time.monotonic()
     for number in range(count):
         assert node.change(("configure", "activate", "deactivate", "cleanup")[number % 4])

@@ -1,7 +1,7 @@
-"""The other process of a link, which ends when it is told to: with what it has published.
+"""The other process of a link, which publishes and then ends on request.
 
-Its arguments: how many numbers to publish, and ``exit``, to end with the last of them and without
-another word, or ``leave``, to end as a program should.
+Arguments: how many numbers to publish; and ``exit``, to exit abruptly after the last of them, or
+``leave``, to end cleanly.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tests.support.peers import KEEP_ALL
 
 
 async def main(count: int, end: str) -> None:
-    """Publish numbers, slowly until the link has them, and then all at once."""
+    """Publish numbers, slowly until the link carries them, and then all at once."""
     told = asyncio.Event()
     asyncio.get_running_loop().add_reader(sys.stdin, told.set)
     async with (

@@ -17,7 +17,7 @@ STREAMED_BYTES = 120_000  # less than what is shared, more than what a socket ta
 
 
 async def main() -> None:
-    """Send back what comes."""
+    """Send back what arrives."""
     ended = asyncio.Event()
     asyncio.get_running_loop().add_reader(sys.stdin, ended.set)
     async with (

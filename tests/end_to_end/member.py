@@ -1,6 +1,6 @@
-"""A participant for tests: says its name fifty times a second, and tells on stdout what it hears.
+"""A participant for tests: publishes its name fifty times a second, and prints what it receives.
 
-``python tests/end_to_end/member.py NAME``. Lines are ``started``, ``open``, ``heard NAME``,
+``python tests/end_to_end/member.py NAME``. It prints ``started``, ``open``, ``heard NAME``,
 ``gone NAME`` when a node leaves the graph, ``sum N`` or ``error TYPE: TEXT`` for a call, and
 ``stopped``. A line ``call N`` on stdin calls /add_NAME of the member N.
 """
@@ -34,13 +34,13 @@ class Member(Node):
         self.create_timer(0.02, lambda: self.publisher.publish(String(data=name)))
 
     def hear(self, msg: String) -> None:
-        """Tell of each new name."""
+        """Print each new name."""
         if msg.data not in self.heard:
             self.heard.add(msg.data)
             tell("heard", msg.data)
 
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-        """Answer, unless the sum is negative: then never."""
+        """Answer, or never if the sum is negative."""
         if request.a + request.b < 0:
             tell("asked")
             await asyncio.Event().wait()
@@ -56,7 +56,7 @@ class Member(Node):
             tell("error", f"{type(error).__name__}:", error)
 
     async def obey(self) -> None:
-        """Do what stdin says."""
+        """Execute the lines of stdin."""
         lines: asyncio.Queue[str] = asyncio.Queue()
         loop = asyncio.get_running_loop()
         loop.add_reader(sys.stdin, lambda: lines.put_nowait(sys.stdin.readline()))
@@ -66,7 +66,7 @@ class Member(Node):
             loop.remove_reader(sys.stdin)
 
     async def watch(self) -> None:
-        """Tell who leaves the graph."""
+        """Print which nodes leave the graph."""
         before: set[str] = set()
         while True:
             now = {node.name for node in self.graph.nodes()}

@@ -1,8 +1,8 @@
-"""Runs a program as if on another system: without what Python lacks there.
+"""Runs a program as if on another system, without what Python lacks there.
 
-Usage: ``python other_system.py windows|macos PROGRAM ARGUMENTS``. What is taken away is what
-CPython's documentation marks as not available there and aionode, its tests aside, could touch.
-The name of the system stays, or the standard library would look for the other system's modules.
+Usage: ``python other_system.py windows|macos PROGRAM ARGUMENTS``. It removes what CPython's
+documentation marks as unavailable there and aionode, apart from its tests, could use. The name of
+the system stays, or the standard library would look for the other system's modules.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ NO_MODULES_ON_WINDOWS = "fcntl termios tty pty pwd grp resource syslog readline"
 
 
 def remove(attributes: dict[Any, str]) -> None:
-    """Take attributes away."""
+    """Remove attributes."""
     for module, names in attributes.items():
         for name in names.split():
             if hasattr(module, name):
@@ -56,17 +56,17 @@ def remove(attributes: dict[Any, str]) -> None:
 
 
 def refuse(*_: object, **__: object) -> NoReturn:
-    """Do as the loop of Windows does."""
+    """Refuse, like the loop on Windows."""
     raise NotImplementedError
 
 
 def no_timerfd() -> NoReturn:
-    """Do as a C library without `timerfd` does."""
+    """Fail like a C library without `timerfd`."""
     raise OSError(errno.ENOSYS, "no timerfd here")
 
 
 def become(system: str) -> None:
-    """Take away what `system` lacks."""
+    """Remove what `system` lacks."""
     asyncio.new_event_loop().close()  # which imports the rest of asyncio
     for name in ("textual.app", "mcp.server"):  # they ask for this system's name, which stays
         with suppress(ImportError):

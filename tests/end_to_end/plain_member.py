@@ -1,4 +1,4 @@
-"""One of two processes that talk over Zenoh, or both ends in one; its argument says which."""
+"""One of two processes that communicate over Zenoh, or both ends in one, by its argument."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def tell(*words: object) -> None:
 
 
 class Talker(Node):
-    """Says the same all the time, and serves."""
+    """Publishes the same repeatedly, and serves."""
 
     def __init__(self, **options: object) -> None:
         super().__init__("talker", **options)  # type: ignore[arg-type]
@@ -29,14 +29,14 @@ class Talker(Node):
         self.create_service(Trigger, "/ask", self.answer)
 
     def answer(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Say yes."""
+        """Answer with success."""
         del request
         response.success = True
         return response
 
 
 async def listen(context: Context) -> None:
-    """Hear something, ask something."""
+    """Receive a message, and call a service."""
     async with asyncio.timeout(20), Node("listener", context=context) as node:
         subscription = node.create_subscription(String, "/chatter", None, 10)
         for _ in range(3):
@@ -47,7 +47,7 @@ async def listen(context: Context) -> None:
 
 
 async def both() -> None:
-    """Talk within one process."""
+    """Communicate within one process."""
     async with Context(transport="local") as context, Talker(context=context):
         await listen(context)
 

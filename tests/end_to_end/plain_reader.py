@@ -1,7 +1,7 @@
-"""A subscription as a ROS 2 node on rmw_zenoh_cpp has it, which acknowledges nothing.
+"""A subscription like that of a ROS 2 node on rmw_zenoh_cpp, which acknowledges nothing.
 
-``python tests/end_to_end/plain_reader.py TOPIC COUNT [bare]``, and with ``bare`` without a token.
-Lines on stdout are ``open``, ``heard N`` when all have come, ``wrong`` if not in order, and
+``python tests/end_to_end/plain_reader.py TOPIC COUNT [bare]``; with ``bare``, without a token.
+It prints ``open``, ``heard N`` when all have arrived, ``wrong`` if they are out of order, and
 ``count N`` for each line on stdin.
 """
 

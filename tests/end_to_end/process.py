@@ -31,20 +31,20 @@ promised are measured by `make faults` and `make motion`.
 
 
 class Process:
-    """A Python program whose lines can be waited for; killed in the end if it still runs.
+    """A Python program whose output can be waited for; killed at the end if it still runs.
 
-    It has a process group of its own: the system suspends no process whose group is orphaned, as
+    It has its own process group: the system does not suspend a process whose group is orphaned, as
     that of a test may be.
 
     Args:
         arguments: What follows `python` on the command line.
-        env: More variables of its environment.
-        fresh: Whether Python is started for it: where its start, or the end of the interpreter, is
-            what a test is about.
+        env: Additional environment variables.
+        fresh: Whether to start Python itself, for tests about its start or the end of the
+            interpreter.
 
     Attributes:
         started_s: When it was started, by `time.monotonic`.
-        lines: Each line so far, with when it came.
+        lines: Each line so far, with its time.
     """
 
     def __init__(
@@ -96,10 +96,10 @@ class Process:
             error.add_note(f"{self._popen.args!r}: {[line for _, line in self.lines]}")
 
     def expect(self, *texts: str) -> float:
-        """Wait until each of `texts` began a line; return how long after the start the last came.
+        """Wait until each of `texts` has begun a line; return the time of the last since the start.
 
         Raises:
-            TimeoutError: one did not come.
+            TimeoutError: one did not appear.
         """
         missing = set(texts)
         last_s = 0.0
@@ -123,22 +123,22 @@ class Process:
             yield entry
 
     def rest_so_far(self) -> list[str]:
-        """Return everything that it has written until now."""
+        """Return its output so far."""
         while not self._queue.empty():
             self.lines.append(self._queue.get())
         return [line for _, line in self.lines]
 
     def rest_after(self, wait_s: float) -> list[tuple[float, str]]:
-        """Wait, and return everything that it has written until then, with the times."""
+        """Wait, and return its output until then, with the times."""
         time.sleep(wait_s)
         self.rest_so_far()
         return self.lines
 
     def ask(self, line: str, answer: str) -> str:
-        """Send it a line, and return what follows `answer` in the next line that begins so.
+        """Send it a line, and return what follows `answer` in the next line that begins with it.
 
         Raises:
-            TimeoutError: there was none.
+            TimeoutError: there was no such line.
         """
         seen = len(self.rest_so_far())
         self.write(line)
@@ -155,7 +155,7 @@ class Process:
         return self._popen.wait(PATIENCE_S)
 
     def rest(self) -> list[str]:
-        """Return everything that a process which has ended wrote."""
+        """Return the output of a process that has ended."""
         self._reader.join()
         while not self._queue.empty():
             self.lines.append(self._queue.get())
@@ -181,5 +181,5 @@ class Process:
 
 
 def member(name: str) -> Process:
-    """Return a member of the group that hear each other."""
+    """Return a member of the group."""
     return Process("tests/end_to_end/member.py", name)

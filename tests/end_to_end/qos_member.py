@@ -15,7 +15,7 @@ PROFILE = QoSProfile(
 
 
 async def main() -> None:
-    """Offer a lease of a second, and say nothing."""
+    """Offer a lease of a second, and publish nothing."""
     async with Node("member", enable_rosout=False) as node:
         node.create_publisher(Int32, "n", PROFILE)
         await node.until_destroyed()

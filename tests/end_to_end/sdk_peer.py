@@ -1,7 +1,7 @@
 """A participant made with zenoh-ros2-sdk, which shares no code with aionode.
 
-``python tests/end_to_end/sdk_peer.py PORT`` says ``sdk`` on /hello, tells ``heard NAME`` of what it
-hears there, serves /add_sdk, calls /add_ours with 2 and 3 and tells ``sum N``.
+``python tests/end_to_end/sdk_peer.py PORT`` publishes ``sdk`` on /hello, prints ``heard NAME`` for
+what it receives there, serves /add_sdk, calls /add_ours with 2 and 3 and prints ``sum N``.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def tell(*words: object) -> None:
 
 
 def main() -> None:
-    """Play until the other process ends this one."""
+    """Run until the other process ends this one."""
     there: dict[str, Any] = {"router_port": int(sys.argv[1])}
     heard: set[str] = set()
     both = threading.Event()

@@ -1,4 +1,4 @@
-"""A process that commands, or one that drives and prints what reaches its wheels.
+"""A process that commands, or one that drives and prints the commands of its wheels.
 
 Each command is the time of its publication, in nanoseconds since 1970.
 """

@@ -1,4 +1,4 @@
-"""A robot for tests that is stopped: each of its callbacks drives, and stops driving in `finally`.
+"""A robot that tests stop: each of its callbacks drives, and stops driving in `finally`.
 
 ``python tests/end_to_end/stopping_member.py robot END`` publishes 1.0 on /timer, /thread and /goal
 from a coroutine, a callback in a thread and a goal, and 0.0 when these end; it tells ``driving``
@@ -50,7 +50,7 @@ class Robot(Node):
         )
 
     async def follow(self, topic: str) -> None:
-        """Drive until cancelled, and stop, slowly."""
+        """Drive until cancelled, and then stop slowly."""
         publisher = self.speeds[topic]
         try:
             while True:
@@ -65,7 +65,7 @@ class Robot(Node):
         await self.follow("/timer")
 
     def drive_in_thread(self) -> None:
-        """Drive in a thread, which has to look for the end itself."""
+        """Drive in a thread, which has to check for the end itself."""
         publisher = self.speeds["/thread"]
         pause = threading.Event()
         try:
@@ -91,7 +91,7 @@ def block(how: str) -> None:
 
 
 class Commander(Node):
-    """Drives until it is told to stop, and then hangs."""
+    """Drives until told to stop, and then hangs."""
 
     def __init__(self, end: str) -> None:
         super().__init__("robot", enable_rosout=False, start_parameter_services=False)
@@ -107,7 +107,7 @@ class Commander(Node):
         self.line.set()
 
     async def drive(self) -> None:
-        """Drive until a line comes, or the cancellation."""
+        """Drive until a line on stdin, or until cancelled."""
         try:
             while not self.line.is_set():
                 self.speed.publish(Float64(data=1.0))
@@ -122,7 +122,7 @@ class Commander(Node):
 
 
 async def holder(end: str) -> None:
-    """Drive with a lease, and end in no good way."""
+    """Drive with a lease, and end badly."""
     async with Node("robot", enable_rosout=False, start_parameter_services=False) as node:
         publisher = node.create_publisher(Float64, "/timer", 20)
         await publisher.wait_for_subscribers()
@@ -163,7 +163,7 @@ async def robot(end: str) -> None:
 
 
 class Reader(Node):
-    """Tells of changes."""
+    """Prints changes."""
 
     def __init__(self) -> None:
         super().__init__("reader", enable_rosout=False, start_parameter_services=False)
@@ -172,7 +172,7 @@ class Reader(Node):
             self.create_subscription(Float64, topic, lambda msg, it=topic: self.hear(it, msg), 100)
 
     def hear(self, topic: str, msg: Float64) -> None:
-        """Tell what is new."""
+        """Print a changed value."""
         if self.last.get(topic) != msg.data:
             self.last[topic] = msg.data
             tell(topic, msg.data)

@@ -1,6 +1,6 @@
 """What a visitor may do by the rules of the how-to: each verb on each kind of key, at a router.
 
-The robot and the visitor are plain Zenoh sessions, so that nothing but the router refuses.
+The robot and the visitor are plain Zenoh sessions, so that only the router can refuse.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def cancel(name: str) -> str:
 class Network:
     """A router, the robot, and the visitor.
 
-    Subscribers are called in the thread that reads, so that what came before a fence is there.
+    Subscribers are called in the reading thread, so that what was sent before a fence has arrived.
 
     Attributes:
         robot: The session of the robot, which may do everything.
@@ -82,11 +82,11 @@ class Network:
         ]
 
     def robot_has_heard(self) -> None:
-        """Wait until the robot has everything that the visitor has said, and the router let by."""
+        """Wait until the robot has everything from the visitor that the router has passed."""
         self._pass(self.visitor, SCAN, self._to_robot)
 
     def visitor_has_heard(self) -> None:
-        """Wait until the visitor has everything that the robot has said, and the router let by."""
+        """Wait until the visitor has everything from the robot that the router has passed."""
         self._pass(self.robot, MAP, self._to_visitor)
 
     def _pass(self, session: zenoh.Session, key: str, heard: queue.Queue[Any]) -> None:
@@ -101,14 +101,14 @@ class Network:
         raise AssertionError(f"{fence} has not passed {key}")
 
     def settle(self) -> None:
-        """Have the router know what both have declared."""
+        """Wait until the router knows what both have declared."""
         for _ in range(2):
             self.robot_has_heard()
             self.visitor_has_heard()
 
 
 def opened(config: Path) -> zenoh.Session:
-    """Return a session; a busy machine may take longer than Zenoh tries to connect."""
+    """Return a session; connecting on a busy machine may take longer than Zenoh tries."""
     for _ in range(3):
         with suppress(zenoh.ZError):
             return zenoh.open(zenoh.Config.from_file(str(config)))
@@ -178,7 +178,7 @@ PUTS = {
 @pytest.mark.parametrize("verb", ["put", "delete"])
 @pytest.mark.parametrize("what", PUTS)
 def test_a_visitor_says_only_what_its_rules_allow(network: Network, what: str, verb: str) -> None:
-    """And deletes nothing: no message of ROS is a deletion."""
+    """It may not delete anything either: no ROS message is a deletion."""
     key, is_allowed = PUTS[what]
     heard: list[zenoh.Sample] = []
     names = (key, "**", "**/@aionode/**", "@aionode/**") if "*" in key else (key,)
@@ -212,7 +212,7 @@ SUBSCRIBERS = {
 
 @pytest.mark.parametrize("what", SUBSCRIBERS)
 def test_a_visitor_hears_only_what_its_rules_allow(network: Network, what: str) -> None:
-    """Retransmissions included: they are messages."""
+    """Including retransmissions, which are messages as well."""
     key, is_allowed = SUBSCRIBERS[what]
     heard: list[zenoh.Sample] = []
     subscriber = network.visitor.declare_subscriber(key, direct(heard.append))
@@ -225,7 +225,7 @@ def test_a_visitor_hears_only_what_its_rules_allow(network: Network, what: str) 
 
 
 def test_a_visitor_hears_nothing_by_a_wildcard(network: Network) -> None:
-    """A rule for a topic refuses a subscriber for all."""
+    """A rule for one topic refuses a subscriber for all of them."""
     heard: list[zenoh.Sample] = []
     names = ("**", "7/**", "@aionode/**", "**/@aionode/**", "*/*/*/*")
     subscribers = [network.visitor.declare_subscriber(name, direct(heard.append)) for name in names]
@@ -280,7 +280,7 @@ ANSWERS = {
 
 @pytest.mark.parametrize("what", ANSWERS)
 def test_a_visitor_answers_for_no_other_node(network: Network, what: str) -> None:
-    """It may declare the queryable, and nobody asks it."""
+    """It may declare the queryable, but gets no queries."""
     key = ANSWERS[what]
 
     def answer(query: zenoh.Query) -> None:
@@ -313,7 +313,7 @@ TOKENS = {
 
 @pytest.mark.parametrize("what", TOKENS)
 def test_a_visitor_announces_only_what_its_rules_allow(network: Network, what: str) -> None:
-    """Its own node, and what that may have."""
+    """Its own node, and the endpoints that this node may have."""
     key, is_allowed = TOKENS[what]
     seen = Seen()
     liveliness = network.robot.liveliness()
@@ -332,7 +332,7 @@ def test_a_visitor_announces_only_what_its_rules_allow(network: Network, what: s
 
 
 def test_a_visitor_sees_the_graph(network: Network) -> None:
-    """It has to find whom it may talk with; names are no secret."""
+    """It has to find its peers, and names are not secret."""
     key = token("MS", "talker", "%scan")
     liveliness = network.visitor.liveliness()
     seen = Seen()

@@ -1,4 +1,4 @@
-"""Actions between processes: the good way, and what is left when one end is killed."""
+"""Actions between processes: the normal case, and what is left when one end is killed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LONG = "100000"
 
 @contextmanager
 def ends(steps: str) -> Iterator[tuple[Process, Process]]:
-    """A server, and a client whose goal of so many steps was accepted."""
+    """A server, and a client whose goal was accepted."""
     with Process(PROGRAM, "server") as server:
         server.expect("open")
         with Process(PROGRAM, "client", steps) as client:
@@ -58,14 +58,14 @@ def test_a_goal_goes_from_process_to_process() -> None:
 
 
 def test_the_exception_of_a_server_is_told_in_the_other_process() -> None:
-    """As a reply of its own, because ROS's result has no room for it."""
+    """In a reply of its own, because ROS's result has no field for it."""
     with ends("13") as (server, client):
         client.expect("result ABORTED ValueError: thirteen")
         expect_empty_tables(server)
 
 
 def test_a_killed_server_is_an_error_at_once() -> None:
-    """SIGKILL: nothing is sent before the end, and yet no caller waits in vain."""
+    """After SIGKILL nothing is sent, and yet no caller waits forever."""
     with ends(LONG) as (server, client):
         client.expect("feedback")
         killed_s = time.monotonic()
@@ -77,7 +77,7 @@ def test_a_killed_server_is_an_error_at_once() -> None:
 
 
 def test_a_stopped_server_is_an_error_at_once() -> None:
-    """Ctrl-C: its goal is cut off, and its client told."""
+    """At Ctrl-C its goal ends, and its client is notified."""
     with ends(LONG) as (server, client):
         client.expect("feedback")
         _, status = server.stop()
@@ -88,7 +88,7 @@ def test_a_stopped_server_is_an_error_at_once() -> None:
 
 
 def test_the_goal_of_a_killed_client_goes_on_and_leaves_nothing_behind() -> None:
-    """The robot arrives; the result expires, and the open request has ended with its client."""
+    """The robot reaches its goal; the result expires, and the request ends with its client."""
     with ends("60") as (server, client):
         client.expect("feedback")
         client.send(signal.SIGKILL)
@@ -107,7 +107,7 @@ def freeze(client: Process) -> None:
 
 
 def let_it_block(client: Process) -> None:
-    """Wait until its loop is blocked; its other threads go on."""
+    """Wait until its loop is blocked; its other threads continue."""
     client.expect("blocks")
 
 
@@ -160,7 +160,7 @@ def test_ctrl_c_at_the_client_cancels_its_goal() -> None:
 def test_a_client_that_leaves_its_call_cancels_its_goal(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
-    """The request leaves the process before that ends, over a link as over Zenoh."""
+    """The request leaves the process before it ends, over a link or over Zenoh."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "server") as server:
         server.expect("open")

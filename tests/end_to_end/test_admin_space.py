@@ -1,4 +1,4 @@
-"""No router is asked for its admin space, which could lock its routing table for good."""
+"""No router's admin space is queried, as that could lock its routing table forever."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CONTROL = "@/control/router"
 
 
 class Overheard:
-    """What was asked or written under ``@/`` by any session behind the router."""
+    """Records queries and puts under ``@/`` by any session behind the router."""
 
     def __init__(self) -> None:
         self.keys: list[str] = []
@@ -31,7 +31,7 @@ class Overheard:
             self._control.set()
 
     def all(self, session: zenoh.Session) -> list[str]:
-        """Return all keys up to a question of our own, which comes last."""
+        """Return all keys before a final query of the test."""
         list(session.get(CONTROL, timeout=1))
         assert self._control.wait(5)
         return self.keys
@@ -39,7 +39,7 @@ class Overheard:
 
 @contextmanager
 def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
-    """A router of ROS, and a session that answers for every admin space behind it."""
+    """A ROS router, and a session that answers for every admin space behind it."""
     overheard = Overheard()
     with ExitStack() as stack:
         router = ros_router()
@@ -53,10 +53,10 @@ def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
 
 @pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
 def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two nodes with a link between them or without one, the questions of a user, and the doctor.
+    """Two nodes with or without a link, commands of a user, and the doctor.
 
-    A router holds its routing table's lock while it answers, and takes it once more for each
-    reply: with a declaration in between no process can join any more (zenoh 1.8 to 1.10).
+    A router holds its routing table's lock while it answers, and takes it again for each reply:
+    with a declaration in between, no process can join any more (zenoh 1.8 to 1.10).
     """
     monkeypatch.setenv("AIONODE_LINK", link)
     with router_with_a_listener() as (asking, overheard), ExitStack() as stack:

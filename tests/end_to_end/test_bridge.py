@@ -1,4 +1,4 @@
-"""A bridge in a process of its own, killed and started again."""
+"""A bridge in a process of its own that is killed and restarted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.support.peers import isolated_environment, quiet_node
 async def test_topics_and_services_come_back_with_a_killed_bridge(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Its nodes leave the graph at once, and a restart needs nothing of ours."""
+    """Its nodes leave the graph at once, and a restart needs no action here."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     async with quiet_node("ours") as node:

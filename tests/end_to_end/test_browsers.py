@@ -42,13 +42,13 @@ def socket_client(text: str, port: int, path: str) -> list[str]:
 
 
 def curl(_: str, port: int, path: str) -> list[str]:
-    """Return curl with the same."""
+    """Return a curl command that does the same."""
     return ["curl", "--silent", f"http://127.0.0.1:{port}/{path}"]
 
 
 @contextmanager
 def running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a browser; it is gone at the end."""
+    """Start a browser, which is killed at the end."""
     with subprocess.Popen(command) as browser:
         try:
             yield browser
@@ -65,7 +65,7 @@ async def pass_on(
 
 @pytest.fixture
 def ends() -> Ends:
-    """What becomes of the routes that wait."""
+    """How the waiting routes end."""
     return asyncio.Queue()
 
 
@@ -139,7 +139,7 @@ async def test_a_killed_browser_cancels_the_call_of_its_route(
     text: str,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """The kernel closes its connection, and the server says so; the log says nothing."""
+    """The kernel closes its connection, and the server reports it; nothing is logged."""
     with running(command(text, server, "guarded")) as browser:
         async with asyncio.timeout(20):
             assert await ends.get() == "began"
@@ -150,7 +150,7 @@ async def test_a_killed_browser_cancels_the_call_of_its_route(
 
 
 async def test_without_the_helper_the_route_goes_on(server: int, ends: Ends) -> None:
-    """What the helper is for; the request ends with its own time limit, or with the server."""
+    """The request then ends with its own timeout, or with the server."""
     with running(socket_client(REQUEST, server, "alone")) as browser:
         async with asyncio.timeout(20):
             assert await ends.get() == "began"
@@ -166,7 +166,7 @@ async def test_without_the_helper_the_route_goes_on(server: int, ends: Ends) -> 
 
 
 async def test_a_browser_that_is_frozen_keeps_its_connection(server: int, ends: Ends) -> None:
-    """As one behind a cut cable: no server can tell. A lease ends what it has asked for."""
+    """As behind a cut cable, no server can notice. A lease ends what it has requested."""
     with running(socket_client(REQUEST, server, "guarded")) as browser:
         async with asyncio.timeout(20):
             assert await ends.get() == "began"

@@ -20,7 +20,7 @@ ATTEMPTS = 4
 
 
 def group(stack: ExitStack, *names: str) -> list[Process]:
-    """Start members one after the other, each when those before it are open."""
+    """Start members one after another, each when the previous ones are open."""
     members = []
     for name in names:
         each = stack.enter_context(member(name))
@@ -32,7 +32,7 @@ def group(stack: ExitStack, *names: str) -> list[Process]:
 def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
     """Start newcomers until one hears all others soon enough after loading; return it.
 
-    More than one, because a loaded machine may take its time for any single one.
+    A loaded machine may delay any single one.
     """
     took = []
     for number in range(ATTEMPTS):
@@ -45,7 +45,7 @@ def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
 
 
 def stop_soon(*members: Process) -> None:
-    """End each with Ctrl-C, also beside readers that take nothing."""
+    """End each with Ctrl-C, even if readers take nothing."""
     for each in members:
         took_s, status = each.stop()
         assert status == 0, f"{status}: {each.rest()}"
@@ -70,7 +70,7 @@ def test_the_second_process_hears_the_first_soon_after_its_start() -> None:
 
 
 def test_six_started_at_once_all_hear_all() -> None:
-    """They race for three meeting ports; those that lose are introduced by the others."""
+    """They compete for three meeting ports; those without one are introduced by the others."""
     names = [f"m{number}" for number in range(6)]
     with ExitStack() as stack:
         members = [stack.enter_context(member(name)) for name in names]
@@ -88,7 +88,7 @@ def test_nothing_listens_beyond_loopback() -> None:
 
 
 def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
-    """Soon, and callers that wait for an answer get an error."""
+    """It leaves soon, and waiting callers get an error."""
     with ExitStack() as stack:
         one, two, three = group(stack, "one", "two", "three")
         one.expect("heard three")
@@ -115,7 +115,7 @@ def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
 def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
     number: signal.Signals,
 ) -> None:
-    """The first process holds the first port: no other may depend on it."""
+    """The first process holds the first port, but no other may depend on it."""
     with ExitStack() as stack:
         holder, *others = group(stack, "holder", "one", "two", "three")
         others[-1].expect("heard holder", "heard one", "heard two")
@@ -125,7 +125,7 @@ def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
 
 
 def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
-    """The process that is left has no meeting port, and dials them."""
+    """The remaining process has no meeting port, and dials them."""
     with ExitStack() as stack:
         *holders, last = group(stack, "h1", "h2", "h3", "last")
         last.expect("heard h1", "heard h2", "heard h3")
@@ -139,7 +139,7 @@ def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
 
 
 def test_the_others_do_not_notice_when_the_holder_goes() -> None:
-    """Those who know each other are linked directly."""
+    """Processes that know each other are connected directly."""
     with ExitStack() as stack:
         holder, one, two = group(stack, "holder", "one", "two")
         one.expect("heard two")
@@ -151,7 +151,7 @@ def test_the_others_do_not_notice_when_the_holder_goes() -> None:
 
 @pytest.mark.parametrize("order", ["router first", "ours first"])
 def test_ros_nodes_and_ours_see_each_other_through_a_router(order: str) -> None:
-    """With rmw_zenoh's own configuration, in whatever order they start."""
+    """With rmw_zenoh's own configuration, in any order of start."""
     with ExitStack() as stack:
         if order == "router first":
             stack.callback(ros_router().close)
@@ -200,14 +200,14 @@ def listening_addresses(pid: int) -> list[str]:
 
 
 def readable(address: str) -> str:
-    """Return an address of /proc/net as people write it, IPv6 as it is."""
+    """Return an IPv4 address of /proc/net in dotted form, and an IPv6 address as it is."""
     if len(address) != 8:
         return address
     return ".".join(str(byte) for byte in reversed(bytes.fromhex(address)))
 
 
 def test_our_router_introduces_ros_nodes_to_each_other() -> None:
-    """`aionode router` is for those who have no rmw_zenohd."""
+    """`aionode router` is for users without rmw_zenohd."""
     endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
     with ExitStack() as stack:
         router = stack.enter_context(Process("-m", "aionode", "router", "--listen", endpoint))

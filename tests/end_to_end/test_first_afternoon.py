@@ -1,4 +1,4 @@
-"""A first afternoon: a robot in two ROS packages, launched, driven, recorded, replayed, watched."""
+"""A newcomer's first afternoon: two ROS packages, launched, driven, recorded and replayed."""
 
 from __future__ import annotations
 
@@ -125,14 +125,14 @@ FILES = {
 
 
 class Terminal:
-    """A user's terminals, all in the folder of the workspace."""
+    """A user's terminals in the workspace's folder."""
 
     def __init__(self, workspace: Path) -> None:
         self.workspace = workspace
         self.running: list[subprocess.Popen[str]] = []
 
     def do(self, *words: str, module: str = "aionode", folder: str = ".") -> str:
-        """Run a command to its end, and return what it printed; nothing may stumble."""
+        """Run a command to its end, and return its output; it must not fail."""
         done = fork_server.run(
             ["-m", module, *words],
             env={**os.environ, "PYTEST_ADDOPTS": ""},  # those of this run of tests
@@ -167,7 +167,7 @@ class Terminal:
 
 @pytest.fixture
 def terminal(tmp_path: Path) -> Iterator[Terminal]:
-    """A workspace with the robot's packages, which nobody has built."""
+    """A workspace with the robot's packages, which were not built."""
     for name, text in FILES.items():
         file = tmp_path / "src" / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -193,7 +193,7 @@ def fetched(port: int, path: str, body: dict[str, Any] | None = None) -> str:
 
 
 def test_a_first_afternoon_with_a_robot_has_no_stumble(terminal: Terminal) -> None:
-    """What a newcomer does, in order; each step has failed for one in an earlier version."""
+    """A newcomer's steps in order; each has failed for someone in an earlier version."""
     (port,) = free_ports(1)
     robot = terminal.start("launch", "minibot", "minibot.launch.py")
     gateway = terminal.start("gateway", "--port", str(port), "--allow-write")

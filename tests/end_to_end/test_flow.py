@@ -1,4 +1,4 @@
-"""Over Zenoh a process that freezes, lags or ends stops no other, and costs it no message."""
+"""Over Zenoh, a process that freezes, lags or ends stops no other and costs no message."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ ENDLESS = 10**9
 
 @pytest.fixture(autouse=True)
 def without_links(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As between hosts, or users."""
+    """As between hosts or users."""
     monkeypatch.setenv("AIONODE_LINK", "off")
 
 
 @contextmanager
 def members(*each: tuple[object, ...]) -> Iterator[list[Process]]:
-    """Start members of the group, one after the other."""
+    """Start members of the group, one after another."""
     with ExitStack() as stack:
         started = []
         for role, *rest in each:
@@ -59,14 +59,14 @@ def count(process: Process) -> int:
 
 
 def sleep_s(seconds: float) -> None:
-    """Let other processes run for some time."""
+    """Wait while other processes run."""
     time.sleep(seconds)
 
 
 def freeze_reader(
     freeze_s: float, *, role: str = "reader", messages: int = 15_000, limit_ms: float = STANDS_MS
 ) -> None:
-    """Freeze the reader of a KEEP_ALL publisher: in the end it has everything, others never lag."""
+    """Freeze the reader of a KEEP_ALL publisher: it misses nothing, and others never lag."""
     with members(
         (role, "big", messages),
         ("lister", "tick", ENDLESS),
@@ -93,7 +93,7 @@ def freeze_reader(
 
 
 def test_a_frozen_reader_stops_no_loop_and_loses_nothing() -> None:
-    """A BLOCK put held the queue towards it, and every thread with it, the loop's too."""
+    """A BLOCK put held the queue towards it, and with it every thread, including the loop's."""
     freeze_reader(2.0)
 
 
@@ -106,13 +106,13 @@ def test_a_reader_may_be_frozen_for_longer_than_the_lease(freeze_s: float) -> No
 
 
 def test_a_frozen_reader_that_acknowledges_nothing_stops_no_loop() -> None:
-    """As a ROS 2 node: a thread waits for it, as long as its connection lives."""
+    """Like a ROS 2 node: a thread waits for it as long as its connection lasts."""
     freeze_reader(2.0, role="plain")
 
 
 @pytest.mark.parametrize("role", ["reader", pytest.param("plain", marks=pytest.mark.stress)])
 def test_a_publisher_ends_at_once_beside_a_frozen_reader_and_says_what_is_lost(role: str) -> None:
-    """SIGTERM took ten seconds or more, and what waited was lost in silence."""
+    """SIGTERM took ten seconds or more, and waiting messages were lost silently."""
     with members((role, "big", ENDLESS), ("keeper", "big", 100_000, 500)) as (reader, keeper):
         keeper.expect("matched")
         reader.send(signal.SIGSTOP)
@@ -147,7 +147,7 @@ def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
 def test_a_reliable_burst_within_the_depth_arrives_as_a_whole(
     role: str, messages: int, size: int
 ) -> None:
-    """KEEP_LAST with a depth that holds it, published in one go."""
+    """Published at once, with KEEP_LAST and a sufficient depth."""
     with members((role, "burst", messages), ("sender", "burst", messages, size)) as (
         reader,
         sender,
@@ -160,7 +160,7 @@ def test_a_reliable_burst_within_the_depth_arrives_as_a_whole(
     ("messages", "size"), [(5_000, 1_000), pytest.param(200, 20_000, marks=pytest.mark.stress)]
 )
 def test_what_a_publisher_has_sent_before_it_ends_arrives(messages: int, size: int) -> None:
-    """Its process waits for that, as long as the reader takes it."""
+    """Its process waits for that as long as the reader accepts messages."""
     with members(("reader", "last", messages), ("quitter", "last", messages, size)) as (
         reader,
         quitter,

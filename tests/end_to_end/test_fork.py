@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system doe
 
 
 def told(how: str, *, fresh: bool = False) -> list[str]:
-    """Return what the program tells; nothing of it is left in the end."""
+    """Return the program's output; it leaves no process behind."""
     with fork_server.start(
         [str(MEMBER), how],
         fresh=fresh,
@@ -44,7 +44,7 @@ def told(how: str, *, fresh: bool = False) -> list[str]:
 
 @pytest.mark.parametrize("how", ["a node", "its context", "a context"])
 def test_a_forked_child_is_refused_a_node_and_told_of_spawn(how: str) -> None:
-    """It would have the parent's sockets and shared memory, and no threads to serve them."""
+    """It would have the parent's sockets and shared memory, but no threads to serve them."""
     lines = told(how)
     (refusal,) = (line for line in lines if line.startswith("child:"))
     assert refusal.startswith("child: ForkedProcessError")
@@ -53,7 +53,7 @@ def test_a_forked_child_is_refused_a_node_and_told_of_spawn(how: str) -> None:
 
 
 def test_a_forked_child_cannot_publish_with_what_it_has_inherited() -> None:
-    """Nothing of it goes out; its own process does."""
+    """Nothing of it is sent, and its parent continues."""
     lines = told("publish")
     assert lines[0].startswith("child: EntityDestroyedError")
     assert lines[1:] == ["exit 0", "sockets 2", "parent: done"]
@@ -66,12 +66,12 @@ def test_a_forked_child_that_uses_no_network_does_its_work(how: str) -> None:
 
 
 def test_a_pool_of_forked_processes_works_beside_a_node() -> None:
-    """As `run_in_executor` is used for what takes long."""
+    """As with `run_in_executor` for long computations."""
     assert told("pool") == ["squares 0 1 4 9", "sockets 2", "parent: done"]
 
 
 def test_a_subprocess_with_a_function_before_exec_works_beside_a_node() -> None:
-    """Python forks for it, too."""
+    """Python forks for it as well."""
     assert [line for line in told("subprocess") if line != "1"] == [
         "exit 0",
         "sockets 2",
@@ -80,5 +80,5 @@ def test_a_subprocess_with_a_function_before_exec_works_beside_a_node() -> None:
 
 
 def test_a_forked_child_may_end_as_programs_do() -> None:
-    """With its exit handlers, and everything that the interpreter throws away."""
+    """With its exit handlers and the finalization of the interpreter."""
     assert told("between", fresh=True) == ["exit 0", "parent: done"]

@@ -1,4 +1,4 @@
-"""A process is left as it was: whatever happens, what is the program's own is as before."""
+"""Whatever happens, a program's own resources are left as they were."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ asyncio.run(main())
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Look for sockets and lost peers as early as possible: no other process uses these ports."""
+    """Check for sockets and lost peers as early as possible: no other process uses these ports."""
     monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     monkeypatch.setattr(forgotten_peers, "FIRST_S", 0.1)
     monkeypatch.setattr(forgotten_peers, "SURE_S", 0.05)
@@ -64,7 +64,7 @@ def soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @asynccontextmanager
 async def nodes_over(route: str) -> AsyncIterator[Two]:
-    """Two nodes that reach each other over one kind of transport."""
+    """Two nodes that are connected by one kind of transport."""
     if route != "local":
         async with two_nodes(links=(route == "link",) * 2) as nodes:
             yield nodes
@@ -114,7 +114,7 @@ def cut_connections(node: Node) -> None:
 
 @pytest.mark.parametrize("route", ROUTES)
 async def test_a_start_and_an_end_leave_the_process_as_it_was(route: str, tmp_path: Path) -> None:
-    """Twice, as a context may be opened anew."""
+    """Twice, since a context may be reopened."""
     with guest(tmp_path):
         for _ in range(2):
             async with nodes_over(route) as nodes:
@@ -135,7 +135,7 @@ async def work(_: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
 
 
 async def fail_over(route: str) -> None:
-    """Run nodes one of which fails at a message, while a goal runs and one of its calls waits."""
+    """Run nodes, one of which fails at a message while a goal runs and a call is pending."""
     async with nodes_over(route) as nodes:
         await exchange(nodes)
         nodes.b.create_action_server(Fibonacci, "work", execute_callback=work)
@@ -173,7 +173,7 @@ async def test_a_lost_connection_and_its_recovery_leave_the_process_as_it_was(
 async def test_an_end_beside_a_frozen_peer_leaves_the_process_as_it_was(
     route: str, tmp_path: Path
 ) -> None:
-    """Its connections are cut, and no other."""
+    """Only its connections are cut."""
     with Process("-c", PEER, route) as peer:
         await asyncio.to_thread(peer.expect, "up")
         with guest(tmp_path):
@@ -187,7 +187,7 @@ async def test_an_end_beside_a_frozen_peer_leaves_the_process_as_it_was(
 
 @pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "failure", "return"])
 def test_a_program_is_left_as_it_was_when_run_returns(end: str, tmp_path: Path) -> None:
-    """It may go on; its handlers, settings of `gc` and loggers are its own."""
+    """It may continue with its own signal handlers, `gc` settings and loggers."""
     with Process("tests/end_to_end/guest_member.py", str(tmp_path), end, fresh=True) as program:
         program.expect("runs")
         if end.startswith("SIG"):

@@ -19,7 +19,7 @@ WRITERS = 3
 def test_a_reader_keeps_nothing_of_publishers_that_have_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Zenoh keeps the shared memory of a peer for ever: two descriptors for each restart of it."""
+    """Zenoh keeps a peer's shared memory forever: two descriptors for each restart of it."""
     monkeypatch.setenv("AIONODE_LINK", "off")
     with Process("tests/end_to_end/flow_member.py", "lister", "large", "10") as reader:
         reader.expect("open")
@@ -33,7 +33,7 @@ def test_a_reader_keeps_nothing_of_publishers_that_have_ended(
 
 
 def send_large(reader: Process, number: int) -> None:
-    """Let a process send ten large messages, end it, and start the next one after that."""
+    """Have a process send ten large messages, end it, and then start the next one."""
     with Process("tests/end_to_end/flow_member.py", "sender", "large", "10", LARGE_BYTES) as writer:
         until(lambda: int(reader.ask("count", "count")) == number * 10)
         writer.stop()

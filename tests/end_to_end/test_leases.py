@@ -1,4 +1,4 @@
-"""Leases for commands, whose holder's process is blocked, frozen, forked or ended."""
+"""Leases whose holder's process is blocked, frozen, forked or ended."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ LONG = "60"
 
 
 def speeds(wheels: Process, wait_s: float = 0.0) -> list[str]:
-    """Return what the wheels have told so far."""
+    """Return the speeds that the wheels have printed so far."""
     return [line for _, line in wheels.rest_after(wait_s) if line.startswith("speed")]
 
 
 def assert_stopped(wheels: Process) -> None:
-    """Check that the stop is the last message of the wheels, and came once."""
+    """Check that the stop arrived once, as the last message."""
     told = speeds(wheels, 0.5)
     first = told.index("speed 0.0")
     assert set(told[:first]) == {"speed 1.0"}
@@ -80,7 +80,7 @@ def test_a_frozen_holder_sends_nothing_but_the_stop_when_it_wakes(
 
 
 def test_a_forked_child_sends_nothing() -> None:
-    """The lease is its parent's, who goes on."""
+    """The lease belongs to its parent, which continues."""
     with (
         Process(PROGRAM, "wheels") as wheels,
         Process(PROGRAM, "commander", LONG, "fork") as commander,
@@ -96,7 +96,7 @@ def test_a_forked_child_sends_nothing() -> None:
 
 
 def test_the_stop_is_sent_when_the_loop_has_ended() -> None:
-    """Nothing ends the block, and no time to live is over."""
+    """Nothing ends the block, and its time to live has not run out."""
     with (
         Process(PROGRAM, "wheels") as wheels,
         Process(PROGRAM, "commander", LONG, "orphan") as commander,

@@ -1,4 +1,4 @@
-"""Managed nodes, as a program sees them that knows only the wire format."""
+"""Managed nodes, as seen by a program that knows only the wire format."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ PEER = str(Path(__file__).with_name("lifecycle_peer.py"))
 
 
 class Scripted(LifecycleNode):
-    """Each callback does what the script says under its name; without a word, it succeeds.
+    """Each callback follows the script under its name, and succeeds by default.
 
     Attributes:
-        script: Name of a callback, and the word for what it does.
+        script: The keyword for what a callback does, by its name.
         calls: Each callback that was called, with the state it got.
     """
 
@@ -38,7 +38,7 @@ class Scripted(LifecycleNode):
         self.calls: list[str] = []
 
     async def follow(self, name: str, state: State) -> Any:
-        """Do what the script says."""
+        """Follow the script for a callback."""
         self.calls.append(f"{name}:{state.label}")
         does = self.script.get(name, "SUCCESS")
         if does in TransitionCallbackReturn.__members__:
@@ -87,7 +87,7 @@ class Scripted(LifecycleNode):
 
 
 class Stage(Node):
-    """Runs one managed node at a time, as the program says."""
+    """Runs one managed node at a time, as the program requests."""
 
     def __init__(self, context: Context, group: asyncio.TaskGroup) -> None:
         super().__init__("stage", context=context)
@@ -107,7 +107,7 @@ class Stage(Node):
     async def prepare(
         self, request: ChangeState.Request, response: ChangeState.Response
     ) -> ChangeState.Response:
-        """Replace the node by one of a name (``node=name``), or take a script for it."""
+        """Replace the node by one with a name (``node=name``), or set a script for it."""
         words = dict(word.split("=") for word in request.transition.label.split())
         name = words.pop("node", None)
         if name is not None:
@@ -125,7 +125,7 @@ class Stage(Node):
     def check_calls(
         self, request: ChangeState.Request, response: ChangeState.Response
     ) -> ChangeState.Response:
-        """Tell whether these callbacks were called."""
+        """Answer whether these callbacks were called."""
         assert self.managed is not None
         response.success = " ".join(self.managed.calls) == request.transition.label
         return response
@@ -212,7 +212,7 @@ aionode.run(Camera)
 async def test_a_managed_node_that_is_killed_and_started_again_gets_its_state_back(
     link: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By another program, such as systemd: the manager sees only that it has gone and is back."""
+    """A program such as systemd restarts it: the manager only sees it leave and return."""
     monkeypatch.setenv("AIONODE_LINK", link)
     kinds: asyncio.Queue[str] = asyncio.Queue()
 

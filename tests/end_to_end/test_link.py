@@ -39,7 +39,7 @@ MEMBER = Path(__file__).with_name("link_member.py")
 
 @pytest.fixture(autouse=True)
 def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The processes of a test hear only each other, and have a folder for sockets of their own."""
+    """The processes of a test see only each other, and have their own folder for sockets."""
     root = tempfile.mkdtemp(prefix="aio")
     monkeypatch.setenv("XDG_RUNTIME_DIR", root)
     for name, value in isolated_environment().items():
@@ -90,7 +90,7 @@ class Pings:
         return writer
 
     async def go(self) -> None:
-        """Send the next number to and fro."""
+        """Send the next number there and back."""
         self.there.publish(Int32(data=self.next))
         assert (await self.back.receive()).data == self.next
         self.next += 1
@@ -112,7 +112,7 @@ async def linked_node() -> AsyncIterator[Node]:
 
 
 async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
-    """In the middle of a stream, with what was on its way."""
+    """In the middle of a stream, with messages in transit."""
     async with linked_node() as node:
         ping = Pings(node)
         for _ in range(2):
@@ -133,7 +133,7 @@ async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
 
 
 async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
-    """The publisher drops the oldest, never waits, and goes on when it goes on."""
+    """The publisher never waits, drops the oldest, and continues with the process."""
     async with linked_node() as node:
         ping = Pings(node)
         with other_process() as process:
@@ -166,14 +166,14 @@ class Stream:
         return cast(Connection, manager.linked(participant))
 
     async def next(self) -> int:
-        """Return the number that fills the next array, and nothing else but it."""
+        """Return the number that fills the whole next array."""
         data = np.frombuffer((await self.subscription.receive()).data, np.uint8)
         assert len(data) == STREAMED_BYTES
         assert data.min() == data.max()
         return int(data[0])
 
     async def until_linked(self) -> None:
-        """Go on until the arrays come over the link."""
+        """Continue until the arrays come over the link."""
         while not any(
             remote_publisher.route is Route.LINK
             for reader in self.node.context.transports[1].manager.readers.values()
@@ -182,7 +182,7 @@ class Stream:
             await self.next()
 
     async def freeze_in_mid_frame(self, process: subprocess.Popen[str]) -> None:
-        """Read no more, and stop the sender when it waits to send the rest of a frame."""
+        """Stop reading, and freeze the sender while it waits to send the rest of a frame."""
         while self.link.held:  # the link has read a part of a frame
             await self.next()
         freeze(self.link)
@@ -199,13 +199,13 @@ class Stream:
 
 
 def stop(process: subprocess.Popen[str]) -> None:
-    """Freeze a process, and see it frozen."""
+    """Freeze a process, and wait until it is frozen."""
     process.send_signal(signal.SIGSTOP)
     os.waitpid(process.pid, os.WUNTRACED)
 
 
 def in_mid_frame(link: Connection) -> bool:
-    """Return whether what waits in the socket ends within a frame."""
+    """Return whether the data in the socket ends within a frame."""
     parser = FrameParser()
     assert not link.held  # so the socket begins with a frame
     with socket.socket(fileno=os.dup(fd_of(link))) as peeking:
@@ -242,7 +242,7 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
 async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Its link stays, and the rest of the frame comes with the next."""
+    """Its link stays, and the rest of the frame arrives with the next one."""
     async with linked_node() as node:
         stream = Stream(node)
         with other_process("stream") as process:

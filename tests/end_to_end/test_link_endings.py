@@ -29,7 +29,7 @@ ENDER = Path(__file__).with_name("link_ender.py")
 
 @contextmanager
 def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[str]]:
-    """Run the process that publishes `count` numbers when it is told to."""
+    """Run the process that publishes `count` numbers on request."""
     root = Path(__file__).parents[2]
     environ = {**os.environ, "PYTHONPATH": str(root)}
     pipes: dict[str, Any] = {
@@ -57,7 +57,7 @@ async def until_linked(node: Any, subscription: Any) -> None:
 
 
 async def numbers_until(last: int, subscription: Any) -> list[int]:
-    """Return the numbers that come, until the last one."""
+    """Return the arriving numbers up to the last one."""
     got: list[int] = []
     while last not in got[-1:]:
         number = (await subscription.receive()).data
@@ -67,13 +67,13 @@ async def numbers_until(last: int, subscription: Any) -> list[int]:
 
 
 def tell(process: subprocess.Popen[str]) -> None:
-    """Let it publish and end."""
+    """Tell it to publish and end."""
     assert process.stdin is not None
     process.stdin.close()
 
 
 async def test_what_a_process_sent_before_it_died_is_read_to_the_end() -> None:
-    """Its socket takes no confirmation any more, which is no reason to close what is unread."""
+    """Its socket accepts no more confirmations, but unread data must still be read."""
     async with asyncio.timeout(30), Context(link=True) as context, quiet_node("n", context) as node:
         subscription = node.create_subscription(Int32, "numbers", None, 1000)
         with publishing_process(401, "exit") as process:
@@ -85,7 +85,7 @@ async def test_what_a_process_sent_before_it_died_is_read_to_the_end() -> None:
 
 @pytest.mark.parametrize("profile", [KEEP_ALL, 10_000], ids=["keep_all", "keep_last"])
 async def test_what_waits_when_a_process_ends_still_reaches_a_slow_reader(profile: Any) -> None:
-    """More than its window and the socket hold; the process ends soon after."""
+    """It is more than the window and the socket hold, and the process ends soon after."""
     async with asyncio.timeout(30), Context(link=True) as context, quiet_node("n", context) as node:
         subscription = node.create_subscription(Int32, "numbers", None, profile)
         with publishing_process(5000, "leave") as process:
@@ -98,7 +98,7 @@ async def test_what_waits_when_a_process_ends_still_reaches_a_slow_reader(profil
 
 
 async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() -> None:
-    """It ends all the same, and says how many messages of which topic were given up."""
+    """It still ends, and logs how many messages of which topic were given up."""
     async with asyncio.timeout(30), Context(link=True) as context, quiet_node("n", context) as node:
         subscription = node.create_subscription(Int32, "numbers", None, KEEP_ALL)
         with publishing_process(9000, "leave") as process:

@@ -1,4 +1,4 @@
-"""aionode runs without the calls that Windows and macOS lack; they are taken away from Python."""
+"""Python without the calls that Windows and macOS lack: aionode still runs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def isolated(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def output_of(system: str, *arguments: str) -> str:
-    """Return what a program prints there."""
+    """Return a program's output there."""
     done = subprocess.run(
         [sys.executable, OTHER_SYSTEM, system, *arguments],
         capture_output=True,
@@ -47,7 +47,7 @@ def output_of(system: str, *arguments: str) -> str:
 
 @both_systems
 def test_every_module_is_imported(system: str) -> None:
-    """Also those that are of no use there, such as those of links."""
+    """Even those that are not used there, such as those of links."""
     assert output_of(system, MEMBER, "import") == "imported\n"
 
 
@@ -59,7 +59,7 @@ def test_two_nodes_of_one_process_talk(system: str) -> None:
 
 @one_system
 def test_two_processes_and_the_command_line_talk_over_zenoh(system: str) -> None:
-    """There are no links there, without a setting; Ctrl-C ends a program as everywhere."""
+    """There are no links there, without any setting, and Ctrl-C ends a program as everywhere."""
     with Process(OTHER_SYSTEM, system, MEMBER, "talk") as talker:
         assert "answer True" in output_of(system, MEMBER, "listen")
         assert "/chatter" in output_of(system, "aionode", "topic", "list")

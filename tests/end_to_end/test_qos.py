@@ -1,4 +1,4 @@
-"""Liveliness of a process that hangs: the system runs it no more, and no peer is told."""
+"""Liveliness of a hanging process: the system no longer runs it, and no peer is notified."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ZENOH_LEASE_S = 10.0
 async def test_a_frozen_process_is_not_alive_within_its_lease(
     link: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And alive again when it goes on."""
+    """And it is alive again when it continues."""
     asserted = returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
     context = Context(link=link)
     setting = {"AIONODE_LINK": "on" if link else "off"}

@@ -1,4 +1,4 @@
-"""Together with zenoh-ros2-sdk, an implementation that shares no code with aionode."""
+"""Interoperation with zenoh-ros2-sdk, which shares no code with aionode."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.end_to_end.process import Process, member
 
 
 def test_messages_and_calls_go_both_ways() -> None:
-    """What two implementations made of the same format have to agree on."""
+    """Two independent implementations of the format agree."""
     pytest.importorskip("zenoh_ros2_sdk")
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     with member("ours") as ours:

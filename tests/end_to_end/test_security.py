@@ -1,4 +1,4 @@
-"""Traffic of a node that the network sees, and clients that certificates keep out."""
+"""A node's traffic that is visible on the network, and clients refused by certificates."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_nothing_listens_beyond_loopback() -> None:
 
 @pytest.mark.usefixtures("runtime")
 def test_no_connection_leaves_the_machine() -> None:
-    """What is connected is connected to this machine."""
+    """All connections end on this machine."""
     with member("one") as one, member("other") as other:
         one.expect("heard other")
         other.expect("heard one")
@@ -92,7 +92,7 @@ def test_the_sockets_of_links_are_in_a_folder_of_the_user_alone(
 def test_subnet_listens_on_every_interface(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """This shows that the other tests could see it."""
+    """This shows that the other tests would notice it."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     with member("one") as one:
         one.expect("open")
@@ -135,7 +135,7 @@ def write(folder: Path, name: str, authority: trustme.CA, *, common_name: str) -
 
 @pytest.fixture
 def join(tmp_path: Path) -> Iterator[Join]:
-    """Starts a member that presents a certificate to the router, and dials only the router."""
+    """Start a member that presents a certificate to the router, and dials only the router."""
     authority, other_authority = trustme.CA(), trustme.CA()
     authority.cert_pem.write_to_path(tmp_path / "ca.pem")
     write(tmp_path, "router", authority, common_name="router")
@@ -171,7 +171,7 @@ def test_the_right_certificate_talks(join: Join) -> None:
 def test_a_certificate_that_access_control_does_not_allow_neither_hears_nor_is_heard(
     join: Join,
 ) -> None:
-    """Though it was there before the others met."""
+    """Even if it was there before the others."""
     one = join("one", "robot")
     wrong = join("wrong", "visitor")
     wrong.expect("open")
@@ -199,5 +199,5 @@ def test_a_visitor_runs_the_node_of_its_rules_and_publishes_its_topic_alone(join
 
 
 def test_a_certificate_of_another_authority_is_refused(join: Join) -> None:
-    """It does not even get a session, and is told so."""
+    """It does not even get a session, and the error says so."""
     join("wrong", "forged").expect("error: Zenoh: no session could be opened")

@@ -1,4 +1,4 @@
-"""Wheels whose movers are killed, frozen or cut off, and wheels that were frozen themselves."""
+"""Wheels whose movers are killed, frozen or cut off, and wheels that are frozen themselves."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ pytestmark = pytest.mark.one_loop  # which loop waits for the processes is of no
 
 
 class Driven:
-    """What has reached the wheels of a node in this process.
+    """The commands and stops of the wheels of a node in this process.
 
     Attributes:
         log: When each command was published, and None for a stop; with the time at which it came.
@@ -61,7 +61,7 @@ class Driven:
         return [at_ns for published_ns, at_ns in self.log if published_ns is None]
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until something is so; asked whenever something has reached the wheels."""
+        """Wait until a condition holds; checked whenever something reaches the wheels."""
         while not condition():
             self._changed.clear()
             await self._changed.wait()
@@ -72,7 +72,7 @@ class Driven:
         await self.until(lambda: len(self.log) >= count)
 
     def expect_no_late_command(self) -> None:
-        """Expect that nothing which was published before a stop came after it."""
+        """Expect that nothing published before a stop arrived after it."""
         stopped_ns = 0
         for published_ns, at_ns in self.log:
             if published_ns is None:
@@ -83,7 +83,7 @@ class Driven:
 
 @pytest.fixture(params=["link", "zenoh"])
 def route(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """How commands reach the wheels."""
+    """The way in which commands reach the wheels."""
     monkeypatch.setenv("AIONODE_LINK", "on" if request.param == "link" else "off")
     return str(request.param)
 
@@ -104,7 +104,7 @@ def mover() -> Process:
 async def test_a_mover_that_ends_stops_the_wheels_soon(
     wheels: Node, number: signal.Signals
 ) -> None:
-    """However long a silence may be: within the second in which a lost process may return."""
+    """Within the second in which a lost process may return, whatever the allowed silence."""
     driven = Driven(wheels, 60)
     with mover() as process:
         await driven.moves()
@@ -116,7 +116,7 @@ async def test_a_mover_that_ends_stops_the_wheels_soon(
 
 
 async def test_a_mover_that_is_frozen_stops_the_wheels(wheels: Node) -> None:
-    """What it has sent before comes no more when it goes on; what it sends then does."""
+    """Commands from before are not delivered when it continues; new ones are."""
     driven = Driven(wheels, 0.3)
     with mover() as process:
         await driven.moves()
@@ -131,7 +131,7 @@ async def test_a_mover_that_is_frozen_stops_the_wheels(wheels: Node) -> None:
 
 
 async def test_a_frozen_mover_beside_another_is_no_silence(wheels: Node, route: str) -> None:
-    """Silence is that of the topic; when the other falls silent too, the wheels stop."""
+    """The topic is not silent; when the other one falls silent too, the wheels stop."""
     driven = Driven(wheels, 0.5)
     async with quiet_node("other", Context(link=route == "link")) as other:
         publisher = other.create_publisher(Int64, TOPIC, 10)
@@ -149,7 +149,7 @@ async def test_a_frozen_mover_beside_another_is_no_silence(wheels: Node, route: 
 
 
 async def test_wheels_that_were_frozen_stop_before_anything_else(route: str) -> None:
-    """Their sockets are full of commands of the time in which they stood still."""
+    """Their sockets are full of commands from the time in which they were frozen."""
     context = Context(link=route == "link")
     async with quiet_node("mover", context) as node:
         publisher = node.create_publisher(Int64, TOPIC, 10)
@@ -187,7 +187,7 @@ async def command(publisher: object, for_s: float) -> None:
 
 
 async def test_a_router_that_is_restarted_is_no_fault(tmp_path: Path) -> None:
-    """Everyone behind it is out of reach, and has not gone."""
+    """Everyone behind it is out of reach, but not gone."""
     config = tmp_path / "client.json5"
     async with contextlib.AsyncExitStack() as stack:
         config.write_text(

@@ -28,7 +28,7 @@ TOPICS = ("/timer", "/thread", "/goal")
 def test_what_callbacks_publish_in_finally_arrives(
     monkeypatch: pytest.MonkeyPatch, link: str, end: str
 ) -> None:
-    """A robot whose program ends must not drive on with its last speed."""
+    """A robot whose program ends must not keep its last speed."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", end) as robot:
         robot.expect("driving")
@@ -48,7 +48,7 @@ def test_what_callbacks_publish_in_finally_arrives(
 def test_a_destroyed_node_lets_its_callbacks_stop_the_robot(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
-    """Also while the program goes on."""
+    """Even while the program goes on."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", "destroy") as robot:
         robot.expect("driving")
@@ -84,7 +84,7 @@ def test_ctrl_c_stops_a_robot_that_is_run_by_one_line(monkeypatch: pytest.Monkey
 def test_what_was_published_is_sent_when_a_second_signal_ends_the_program(
     monkeypatch: pytest.MonkeyPatch, link: str, end: str, begin: str
 ) -> None:
-    """Also if its loop is blocked, and had no time to send what it has collected."""
+    """Even if its loop is blocked, and had no time to send its buffers."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "commander", end) as robot:
         reader.expect("/timer 1.0")
@@ -107,7 +107,7 @@ def test_what_was_published_is_sent_when_a_second_signal_ends_the_program(
 def test_two_signals_a_few_milliseconds_apart_stop_a_robot(
     monkeypatch: pytest.MonkeyPatch, link: str, pause_sec: float
 ) -> None:
-    """Parents forward a signal that the process group has got already."""
+    """Parents forward a signal that the process group has already received."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", "run") as robot:
         reader.expect("/timer 1.0", "/thread 1.0")
@@ -134,7 +134,7 @@ HOLDERS = [
 def test_a_second_signal_sends_the_stop_of_a_lease(
     monkeypatch: pytest.MonkeyPatch, link: str, end: str
 ) -> None:
-    """Long before its time to live is over, also past a loop that is blocked."""
+    """Long before its time to live runs out, even if the loop is blocked."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "holder", end, "run") as robot:
         robot.expect("driving")
@@ -173,7 +173,7 @@ def test_ctrl_z_sends_the_stop_of_a_lease_before_it_suspends_the_program(
 def test_a_lease_that_is_open_when_the_interpreter_exits_sends_its_stop(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
-    """Its event loop was stopped, and nothing runs in it any more."""
+    """Its event loop was stopped, and runs nothing any more."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "holder", "exit") as robot:
         robot.expect("driving")

@@ -90,7 +90,7 @@ class Server:
             return client
 
     def line(self) -> str:
-        """Return the next command that the wheels were given."""
+        """Return the next command of the wheels."""
         assert self.process.stdout is not None
         while True:
             line = self.process.stdout.readline()
@@ -100,7 +100,7 @@ class Server:
 
 @pytest.fixture
 def server(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Server]:
-    """Return a server of a kind."""
+    """Return a server of the given kind."""
     server = Server(tmp_path, request.param)
     yield server
     server.process.kill()
@@ -111,7 +111,7 @@ def server(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Server]:
 
 @pytest.mark.parametrize("server", SERVERS, indirect=True)
 def test_the_first_signal_ends_motion_whatever_is_open(server: Server) -> None:
-    """A server waits for its routes and streams, and the robot may not drive on meanwhile."""
+    """A server waits for its routes and streams, while the robot must not drive on."""
     with server.ask("/events") as stream, server.ask("/drive") as drive:
         assert stream.recv(1000)
         assert server.line() == "1.0\n"

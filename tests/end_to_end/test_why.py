@@ -1,4 +1,4 @@
-"""Why a message came, across processes of which one keeps nothing and one is stopped."""
+"""The causes of a message across processes, one of which keeps none and one is suspended."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ aionode.run(Relay)
 
 
 def chain(sent: Caused) -> list[str]:
-    """Return what was sent, from the end to the beginning, with why the rest is unknown."""
+    """Return the chain of sent items, the last first, and why the rest is unknown."""
     found = [f"{sent.name} {sent.unknown}".strip()]
     for cause in sent.causes:
         found += [cause.callback, *(chain(cause.source) if cause.source else [])]
@@ -51,7 +51,7 @@ def chain(sent: Caused) -> list[str]:
 
 
 async def asked(node: Any, name: str, wanted: list[str]) -> Why:
-    """Return what is told of a name, once its chain is as wanted; or the last that was told."""
+    """Return the answer for a name once its chain is as expected, or else the last answer."""
     found = Why(name)
     try:
         async with asyncio.timeout(PATIENCE_S):
@@ -67,7 +67,7 @@ async def asked(node: Any, name: str, wanted: list[str]) -> Why:
 async def test_a_chain_goes_through_three_processes(
     link: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Over links and over Zenoh; one that keeps no causes, or is stopped, is named."""
+    """Over links and over Zenoh; a process that keeps no causes, or is suspended, is named."""
     environment = {**isolated_environment(), "AIONODE_LINK": link}
     for name, value in environment.items():
         monkeypatch.setenv(name, value)

@@ -1,7 +1,7 @@
 """A node of the how-to on access control, in a process of its own: ``visitor`` or ``robot``.
 
-The visitor says ten numbers on /scan, and on /chatter, which its rules do not allow; the robot
-prints what it hears, and which nodes publish /chatter.
+The visitor publishes ten numbers on /scan, and on /chatter, which its rules do not allow; the robot
+prints what it receives, and which nodes publish /chatter.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ async def visit() -> None:
 
 
 async def stay() -> None:
-    """Hear both topics."""
+    """Subscribe to both topics."""
     async with Node("robot") as node:
         for name in ("scan", "chatter"):
             node.create_subscription(Int32, name, lambda msg, name=name: say(f"{name} {msg.data}"))
