@@ -16,6 +16,7 @@ from aionode._packages._here import (
     use_stand_ins,
 )
 from aionode._packages._packages import Packages
+from aionode._packages._parameter_modules import ParameterModule, parameter_modules
 from aionode._packages._standard import program_module, remark_on, standard_packages
 from aionode._packages._starters import starter_file
 from aionode._packages._workspace import package_of, workspace_of
@@ -23,11 +24,13 @@ from aionode._packages._workspace import package_of, workspace_of
 __all__ = [
     "Executable",
     "Packages",
+    "ParameterModule",
     "around",
     "here",
     "is_python",
     "package_of",
     "package_of_stand_in",
+    "parameter_modules",
     "program_module",
     "remark_on",
     "stand_in",

@@ -8,7 +8,7 @@ from itertools import islice, pairwise
 from pathlib import Path
 from typing import Final, NamedTuple
 
-__all__ = ["MAX_FILES", "Install", "installs_of", "matching"]
+__all__ = ["MAX_FILES", "Install", "calls_of", "installs_of", "matching"]
 
 MAX_FILES: Final = 10_000
 """Maximum files and words of one rule that are read."""
@@ -69,18 +69,32 @@ def installs_of(folder: Path, package: str) -> Iterator[Install]:
     yield from installs_in(folder, variables, set())
 
 
+def calls_of(folder: Path, package: str, function: str) -> list[list[str]]:
+    """Return the arguments of each call of a function in a package's CMakeLists.txt."""
+    variables = {"PROJECT_NAME": [package], "CMAKE_CURRENT_SOURCE_DIR": [str(folder)]}
+    return [
+        list(islice(words_of(rest, variables), MAX_FILES))
+        for command, rest in COMMAND.findall(text_in(folder))
+        if command.lower() == function
+    ]
+
+
+def text_in(folder: Path) -> str:
+    """Return the CMakeLists.txt of a folder without its comments; empty if there is none."""
+    try:
+        with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
+            return re.sub(r"#[^\n]*", "", file.read(MAX_BYTES))
+    except OSError:
+        return ""
+
+
 def installs_in(
     folder: Path, variables: dict[str, list[str]], seen: set[Path]
 ) -> Iterator[Install]:
     """Yield what a folder's CMakeLists.txt installs, and those of the folders that it adds."""
     seen.add(folder)
-    try:
-        with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
-            text = re.sub(r"#[^\n]*", "", file.read(MAX_BYTES))
-    except OSError:
-        return
     variables["CMAKE_CURRENT_SOURCE_DIR"] = [str(folder)]
-    for command, rest in COMMAND.findall(text):
+    for command, rest in COMMAND.findall(text_in(folder)):
         words = list(islice(words_of(rest, variables), MAX_FILES))
         match command.lower(), words:
             case "project", [name, *_]:

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from aionode._packages._cmake import Install, installs_of, matching
 
-__all__ = ["data_files", "entry_points", "scripts"]
+__all__ = ["data_files", "entry_points", "parameter_calls", "scripts"]
 
 MAX_TEXT: Final = 100_000
 """Maximum length of texts and lists computed from a setup.py, since sums may grow without bound."""
@@ -123,12 +123,29 @@ def listed(value: Any) -> list[Any]:
 
 def arguments(folder: Path) -> dict[str, Any]:
     """Return the arguments of the ``setup`` call in a setup.py, as far as they can be evaluated."""
+    return next(iter(calls_of(folder, "setup")), {})
+
+
+def parameter_calls(folder: Path) -> list[list[Any]]:
+    """Return module, file and validators of each ``generate_parameter_module`` of a setup.py."""
+    names = ("module_name", "yaml_file", "validation_module")
+    return [
+        [call.get(name) or call.get(str(index)) for index, name in enumerate(names)]
+        for call in calls_of(folder, "generate_parameter_module")
+    ]
+
+
+def calls_of(folder: Path, function: str) -> list[dict[str, Any]]:
+    """Return the arguments of each call of a function in a setup.py, by name or index.
+
+    They are evaluated as far as they can be.
+    """
     try:
         tree = ast.parse((folder / "setup.py").read_bytes())
     except (OSError, SyntaxError, ValueError):
-        return {}
+        return []
     names: dict[str, Any] = known_functions(folder)
-    for statement in tree.body:
+    for statement in statements(tree.body):
         match statement:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 names[name] = value_of(value, names)
@@ -142,10 +159,20 @@ def arguments(folder: Path) -> dict[str, Any]:
             ):
                 more = value_of(value, names)
                 names[name] = added(names.get(name), [more] if how == "append" else more)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] == "setup":
-            return {word.arg: value_of(word.value, names) for word in node.keywords if word.arg}
-    return {}
+    return [
+        {str(index): value_of(part, names) for index, part in enumerate(node.args)}
+        | {word.arg: value_of(word.value, names) for word in node.keywords if word.arg}
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] == function
+    ]
+
+
+def statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield statements, and those within an ``if``."""
+    for statement in body:
+        yield statement
+        if isinstance(statement, ast.If):
+            yield from statements(statement.body)
 
 
 def value_of(node: ast.expr, names: dict[str, Any]) -> Any:

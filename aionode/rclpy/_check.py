@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
-from aionode._packages import around
+from aionode._packages import around, parameter_modules
 from aionode.idl.search import has_interfaces, module_name, names_in
 from aionode.rclpy._finder import FINDER, KINDS, SUPPLIED, exists, gives_way
 from aionode.rclpy.missing import advice
@@ -320,6 +320,8 @@ def find(wanted: Import, file: Path) -> Finding:
         interface = name.partition("_")[0]
         if not name or (place / inside / f"{interface}.{inside}").is_file():
             return Finding(module, f"in {place}")
+    if place is not None and inside in parameter_modules(place, package):
+        return Finding(module, f"of the parameters in {place}")
     supplied = SUPPLIED | ({package} if has_interfaces(package) else set())
     reason = advice(module, supplied) or "no module of this name is installed"
     return Finding(module, reason, is_there=False)

@@ -22,6 +22,8 @@ FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
 SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
 """Their names."""
 YIELDING: Final = (
+    "generate_parameter_library_py",
+    "interactive_markers",
     "launch_param_builder",
     "moveit_configs_utils",
     "nav2_common",
@@ -100,7 +102,7 @@ def install(
             get_logger("aionode.rclpy").info(f"using the rclpy of {which}")
             if prefer_ros:
                 return
-        sys.meta_path.insert(0, FINDER)
+        sys.meta_path[:] = [FINDER, *sys.meta_path, PARAMETER_FINDER]
     for folder in interfaces:
         add_folder(folder)
     if workspace is not None:
@@ -129,7 +131,7 @@ def provide(name: str) -> None:
     The message packages of the distribution ``aionode-rclpy`` consist of just this call.
     """
     if FINDER not in sys.meta_path:
-        sys.meta_path.insert(0, FINDER)
+        sys.meta_path[:] = [FINDER, *sys.meta_path, PARAMETER_FINDER]
         shared_errors_take_names()
     del sys.modules[name]
     import_module(name)
@@ -176,6 +178,49 @@ class AionodeFinder(MetaPathFinder):
             if module_name(*name.split("/")) == fullname:
                 return spec_from_loader(fullname, InterfaceLoader(name))
         return None
+
+
+class ParameterModuleFinder(MetaPathFinder):
+    """Finds the modules that a build would generate of the parameters of a workspace's package.
+
+    It is the last finder, so that what was built comes first.
+    """
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None,  # noqa: ARG002  # the protocol of finders
+        target: ModuleType | None = None,  # noqa: ARG002  # the protocol of finders
+    ) -> ModuleSpec | None:
+        """Return the spec of a module, or of its package; None if it is not one of these."""
+        package, _, name = fullname.partition(".")
+        if package in sys.stdlib_module_names:
+            return None
+        from aionode._packages import here, parameter_modules  # only for what is not found
+
+        folder = here().sources().get(package)
+        modules = {} if folder is None else parameter_modules(folder, package)
+        if name in modules:
+            return spec_from_loader(fullname, ParameterLoader(modules[name]))
+        if name or not modules or folder is None:
+            return None
+        spec = spec_from_loader(fullname, EmptyLoader(), is_package=True)
+        if spec is not None and spec.submodule_search_locations is not None:
+            spec.submodule_search_locations.append(str(folder / package))  # without __init__.py
+        return spec
+
+
+class ParameterLoader(Loader):
+    """Loads a module that generate_parameter_library would generate."""
+
+    def __init__(self, definition: Any) -> None:
+        self.definition = definition
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Put the class of its parameters into the module."""
+        from generate_parameter_library_py.parameters import classes_of
+
+        vars(module).update(classes_of(self.definition.file, self.definition.validators))
 
 
 def gives_way(package: str) -> bool:
@@ -319,3 +364,4 @@ class InterfaceLoader(Loader):
 
 
 FINDER: Final = AionodeFinder()
+PARAMETER_FINDER: Final = ParameterModuleFinder()

@@ -13,7 +13,7 @@ INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)")
 
 PURE_PYTHON: Final = """
     action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics
-    interactive_markers joint_state_publisher laser_geometry
+    joint_state_publisher laser_geometry
     rclpy_message_converter
     resource_retriever ros2component ros2doctor ros2interface rosapi rosbridge_library
     rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros

@@ -88,6 +88,25 @@ def test_the_other_substitutions_of_nav2_common(files: Files, substitution: str,
     assert text in record["log"]
 
 
+def test_the_poses_of_several_robots_are_read(
+    files: Files, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the command line, as in Jazzy, or from a launch argument, as in Kilted."""
+    text = "one={x: 1.0, yaw: 0.5}; two={y: 2.0}"
+    monkeypatch.setattr(sys, "argv", ["aionode", "launch", "file", f"robots:={text}"])
+    parse = "f'{len(ParseMultiRobotPose(\"robots\").value())}'"
+    records = files.python(
+        f"DeclareLaunchArgument('robots', default_value={text!r}), LogInfo(msg={parse}), "
+        "OpaqueFunction(function=lambda context: [LogInfo(msg=str(ParseMultiRobotPose("
+        "LaunchConfiguration('robots')).perform(context)['two']))])",
+        imports="from nav2_common.launch import ParseMultiRobotPose",
+    )
+
+    assert records[0]["log"] == "2"
+    pose = {"x": 0.0, "y": 2.0, "z": 0.0, "roll": 0.0, "pitch": 0.0, "yaw": 0.0}
+    assert yaml.safe_load(records[1]["log"]) == pose
+
+
 BOMB = "a0: &a0 [x, x]\n" + "".join(
     f"a{n + 1}: &a{n + 1} [{', '.join([f'*a{n}'] * 9)}]\n" for n in range(8)
 )

@@ -132,3 +132,14 @@ def test_a_topic_has_to_be_created_before_it_is_written(path: Path) -> None:
     with pytest.raises(RuntimeError, match="exists"):
         rosbag2_py.SequentialWriter().open(rosbag2_py.StorageOptions(uri=f"{path}2"), CDR)
     writer.close()
+
+
+def test_the_definition_of_a_type_is_found_by_its_name() -> None:
+    """For a bag that a program writes; an unknown type has no text."""
+    source = rosbag2_py.LocalMessageDefinitionSource()
+
+    found = source.get_full_text("geometry_msgs/msg/Point")
+    assert (found.topic_type, found.encoding) == ("geometry_msgs/msg/Point", "ros2msg")
+    assert "float64 x" in found.encoded_message_definition
+    unknown = source.get_full_text("nothing/msg/Nothing")
+    assert (unknown.encoding, unknown.encoded_message_definition) == ("unknown", "")

@@ -32,6 +32,7 @@ __all__ = [
     "ConverterOptions",
     "FileInformation",
     "Info",
+    "LocalMessageDefinitionSource",
     "MessageDefinition",
     "MessageOrder",
     "PlayOptions",
@@ -551,6 +552,17 @@ class SequentialWriter:
     def split_bagfile(self) -> None:
         """Continue in a new file."""
         self._opened().split(0)
+
+
+class LocalMessageDefinitionSource:
+    """The definitions of the types that are found here."""
+
+    def get_full_text(self, root_topic_type: str) -> MessageDefinition:
+        """Return the definition of a type; one that is not found has the encoding ``unknown``."""
+        found = definition_by_name(root_topic_type)
+        if not found.encoding:
+            found.encoding = "unknown"
+        return found
 
 
 def definition_by_name(typename: str) -> MessageDefinition:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -23,7 +24,13 @@ from launch.substitution import (
 )
 from launch.substitutions import FileContent, LaunchConfiguration
 
-__all__ = ["HasNodeParams", "LaunchConfigAsBool", "ReplaceString", "RewrittenYaml"]
+__all__ = [
+    "HasNodeParams",
+    "LaunchConfigAsBool",
+    "ParseMultiRobotPose",
+    "ReplaceString",
+    "RewrittenYaml",
+]
 
 Texts = Mapping[str, SomeSubstitutionsType]
 
@@ -162,6 +169,42 @@ class LaunchConfigAsBool(Substitution):
         """Return True or False."""
         value = context.perform_substitution(self.configuration).strip().lower()
         return str(value in {"true", "1", "yes", "on"})
+
+
+class ParseMultiRobotPose(Substitution):
+    """The poses of several robots, such as ``robot1={x: 1.0, yaw: 0.5}; robot2={y: 2.0}``.
+
+    Args:
+        robots_argument: A substitution with that text; or the name of a launch argument, whose
+            value `value` takes from the command line, as in Humble and Jazzy.
+    """
+
+    def __init__(self, robots_argument: SomeSubstitutionsType) -> None:
+        self._robots_argument = robots_argument
+
+    def perform(self, context: LaunchContext) -> Any:
+        """Return the pose of each robot by its name."""
+        return poses_in(text_of(context, self._robots_argument))
+
+    def value(self) -> dict[str, dict[str, Any]]:
+        """Return the pose of each robot by its name; none without that argument."""
+        start = f"{self._robots_argument}:="
+        given = [each.removeprefix(start) for each in sys.argv if each.startswith(start)]
+        return poses_in(given[0] if given else "")
+
+
+def poses_in(text: str) -> dict[str, dict[str, Any]]:
+    """Return the poses in a text; what a pose does not say is 0."""
+    poses: dict[str, dict[str, Any]] = {}
+    for entry in text.split(";"):
+        name, equals, written = entry.partition("=")
+        if not equals:
+            continue
+        pose = loaded_yaml(written)
+        if not isinstance(pose, dict):
+            raise SubstitutionFailure(f"robots: {entry.strip()!r} is no NAME={{x: 1.0, yaw: 0.5}}")
+        poses[name.strip()] = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0) | pose
+    return poses
 
 
 def texts_of(context: LaunchContext, given: Texts) -> dict[str, str]:
