@@ -17,7 +17,7 @@ from aionode.idl._definition import (
 )
 from aionode.idl._omg import messages_in
 from aionode.idl._parser import BUILTINS, LARGEST_TEXT, PRIMITIVES, parse
-from aionode.interfaces import get_interface, types_of
+from aionode.interfaces import get_interface, type_of
 from aionode.message import (
     ActionType,
     FieldType,
@@ -217,7 +217,7 @@ def existing(typename: str, built: type[Interface]) -> type[Interface] | None:
     That way a workspace with its own std_msgs can be used together with the shipped one.
     """
     package, kind, name = split_type_name(typename)
-    known = types_of(package, kind).get(name)
+    known = type_of(package, kind, name)
     if known is None:
         return None
     halves = HALVES[kind]

@@ -91,7 +91,7 @@ def get_interface(name: str) -> Any:
     kinds = KINDS if len(parts) == 2 else parts[1:2]
     if len(parts) in {2, 3}:
         for kind in kinds:
-            found = types_of(parts[0], kind).get(parts[-1])
+            found = type_of(parts[0], kind, parts[-1])
             if found is not None:
                 return found
             module = sys.modules.get(f"{__name__}.{parts[0]}.{kind}")
@@ -215,7 +215,23 @@ def types_of(package: str, kind: str) -> dict[str, type[Any]]:
     """
     if not package.isidentifier() or kind not in KINDS:
         return {}
-    return types_written(package, kind) | imported_types(package, kind)
+    imported = {
+        name: value
+        for name, value in package_members(package, kind).items()
+        if getattr(value, "__ros_type__", "") == f"{package}/{kind}/{name}"
+    }
+    return types_written(package, kind) | imported
+
+
+def type_of(package: str, kind: str, name: str) -> type[Any] | None:
+    """Return the type that `types_of` has under a name, without a look at all others."""
+    if not package.isidentifier() or kind not in KINDS:
+        return None
+    typename = f"{package}/{kind}/{name}"
+    imported: type[Any] | None = package_members(package, kind).get(name)
+    if getattr(imported, "__ros_type__", "") == typename:
+        return imported
+    return TYPES_BY_NAME.get(typename)
 
 
 def type_names_of(package: str, kind: str) -> set[str]:
@@ -245,20 +261,15 @@ def types_written(package: str, kind: str) -> dict[str, type[Any]]:
     }
 
 
-def imported_types(package: str, kind: str) -> dict[str, type[Any]]:
-    """Return the types of one kind that the module of a package has, by name."""
+def package_members(package: str, kind: str) -> dict[str, Any]:
+    """Return what the module of one kind of a package has, types among it; nothing without one."""
     module_name = f"{__name__}.{package}.{kind}"
     try:
-        module = import_module(module_name)
+        return vars(import_module(module_name))
     except ModuleNotFoundError as error:
         if error.name is not None and module_name.startswith(error.name):
             return {}
         raise
-    return {
-        name: value
-        for name, value in vars(module).items()
-        if getattr(value, "__ros_type__", "") == f"{package}/{kind}/{name}"
-    }
 
 
 def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
