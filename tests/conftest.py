@@ -197,7 +197,7 @@ def pytest_asyncio_loop_factories(
 @pytest.fixture(autouse=True)
 def own_imports() -> Iterator[None]:
     """Have no other test import what this one has `install` find, or see its workspace."""
-    before = list(sys.meta_path)
+    before, imported = list(sys.meta_path), set(sys.modules)
     yield
     sys.meta_path[:] = before
     if loaded := sys.modules.get("aionode._packages._here"):
@@ -205,8 +205,8 @@ def own_imports() -> Iterator[None]:
     if loaded := sys.modules.get("aionode.idl.named"):
         loaded.NAMED.__init__()
         loaded.SEEN.clear()
-        for name, module in list(sys.modules.items()):
-            if isinstance(getattr(module, "__loader__", None), loaded.NamedLoader):
+        for name in sys.modules.keys() - imported:  # to look at all takes 1.7 ms
+            if isinstance(getattr(sys.modules[name], "__loader__", None), loaded.NamedLoader):
                 del sys.modules[name]
 
 
