@@ -42,8 +42,8 @@ async def linked_subscription(nodes: Two) -> Counter[str]:
     await first.until_linked()
     publisher = nodes.a.create_publisher(Int32, "second", 10)
     got: list[Int32] = []
-    gc.unfreeze()  # # objects frozen by tests/conftest.py are not counted
     gc.collect()
+    gc.unfreeze()  # objects frozen by tests/conftest.py are not counted
     shared = gc.get_objects()
     gc.freeze()
     subscription = nodes.b.create_subscription(Int32, "second", got.append, 10)
