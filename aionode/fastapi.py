@@ -67,11 +67,7 @@ class Routes:
     """
 
     def __init__(self) -> None:
-        self._scopes: set[asyncio.Timeout] = set()
-        self._is_ending = False
-        self.begun: Callable[[], None] | None = None
-        self.all_done = asyncio.Event()
-        self.all_done.set()
+        self.reset()
 
     def add(self, scope: asyncio.Timeout) -> None:
         """Record the start of a block."""
@@ -91,9 +87,12 @@ class Routes:
         return self._is_ending
 
     def reset(self) -> None:
-        """Allow blocks again, for another application in this process."""
-        self.begun = None
+        """Allow blocks again, for another application in this process, on a loop of its own."""
+        self._scopes: set[asyncio.Timeout] = set()
         self._is_ending = False
+        self.begun: Callable[[], None] | None = None
+        self.all_done = asyncio.Event()  # waiting for one binds it to a loop
+        self.all_done.set()
 
     def end(self) -> None:
         """Cancel all blocks."""

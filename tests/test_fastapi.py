@@ -116,10 +116,8 @@ async def test_the_block_is_cancelled_when_the_browser_leaves(
     assert ends == ["cancelled"]
 
 
-async def test_a_signal_ends_all_routes_while_one_cleans_up_after_its_browser(
-    app: FastAPI,
-) -> None:
-    """A block that is being cancelled cannot be cancelled again, and kept the others open."""
+async def run_until_signalled(app: FastAPI) -> None:
+    """Run an application with two routes, of which one cleans up as the signal arrives."""
     cleaned_up = asyncio.Event()
 
     @app.get("/left")
@@ -154,6 +152,19 @@ async def test_a_signal_ends_all_routes_while_one_cleans_up_after_its_browser(
             assert await leaving == 503
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+async def test_a_signal_ends_all_routes_while_one_cleans_up_after_its_browser(
+    app: FastAPI,
+) -> None:
+    """A block that is being cancelled cannot be cancelled again, and kept the others open."""
+    await run_until_signalled(app)
+
+
+def test_a_signal_ends_the_routes_of_each_application_of_a_process() -> None:
+    """An event that the first waits for belongs to its loop, and no node of the second ended."""
+    for _ in range(2):
+        asyncio.run(run_until_signalled(FastAPI()))
 
 
 async def test_what_the_route_does_after_the_block_is_not_cancelled(app: FastAPI) -> None:
