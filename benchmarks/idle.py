@@ -321,7 +321,7 @@ def main() -> None:
     """Measure, print the table and write the files."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="3 and 12 processes, for 5 s each")
-    parser.add_argument("--seconds", type=float, default=20.0, help="how long each is looked at")
+    parser.add_argument("--seconds", type=float, default=50.0, help="how long each is looked at")
     parser.add_argument("--peers", nargs="*", help="only these")
     parser.add_argument("--write", type=Path, metavar="PAGE", help="bring a page up to date")
     args = parser.parse_args()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import enum
 import json
+import os
 import secrets
 import sys
 from collections.abc import Iterable, Mapping
@@ -15,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from aionode._process.stopped import pid_space
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, brief
 
@@ -28,6 +30,7 @@ __all__ = [
     "network_from",
     "new_participant",
     "peer_endpoints",
+    "pid_of",
     "udp_sockets",
     "unheard_middleware",
 ]
@@ -362,9 +365,26 @@ def new_participant() -> str:
     session also dials those that are listed, so no two ever dial each other. The time is the
     machine's uptime, which is the same for all processes. Zenoh writes ids without leading zeros,
     and everyone must see the same text.
+
+    After the time comes the process, for `pid_of`.
     """
     first = SOUGHT if udp_sockets() is None else LATER
-    return f"{first}{perf_ns() >> 16:012x}{secrets.token_hex(10)[:19]}"
+    space = pid_space()
+    process = "" if space is None else f"{space:04x}{os.getpid():08x}"
+    rest = secrets.token_hex(10)[: 19 - len(process)]
+    return f"{first}{perf_ns() >> 16:012x}{process}{rest}"
+
+
+def pid_of(participant: str) -> int | None:
+    """Return the process of a context, if it is one of those that this process can name.
+
+    Others choose their ids: it may be any process.
+    """
+    space = pid_space()
+    is_named = len(participant) == 32 and space is not None
+    if not is_named or participant[13:17] != f"{space:04x}":
+        return None
+    return int(participant[17:25], 16)
 
 
 def udp_sockets() -> list[str] | None:

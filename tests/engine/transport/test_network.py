@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import Any
 
 import pytest
@@ -17,6 +18,8 @@ from aionode.engine.transport.network import (
     domain_of_port,
     is_near,
     network_from,
+    new_participant,
+    pid_of,
 )
 from aionode.engine.transport.zenoh.connections.config import probed_ports
 from aionode.engine.transport.zenoh.session.settings import (
@@ -249,6 +252,31 @@ def test_no_number_of_listed_sessions_makes_a_lease_longer_than_that_of_ros_2() 
     lies = Neighbours(40000, tuple(range(41000, 42000)))
 
     assert session_settings(Network(), (), lies)["transport/link/tx/lease"] == 60_000
+
+
+def test_a_session_that_the_others_can_look_at_is_silent_for_long() -> None:
+    """Keep-alives are what wakes an idle process; another machine cannot look."""
+    keys = "transport/link/tx/lease", "transport/link/tx/keep_alive"
+    others = Neighbours(40000, ())
+
+    near = session_settings(Network(), (), others, is_watched=True)
+    far = session_settings(
+        Network(discovery_range=DiscoveryRange.SUBNET), (), others, is_watched=True
+    )
+
+    assert [near[key] for key in keys] == [100_000, 2]
+    assert [far[key] for key in keys] == [10_000, 4]
+
+
+def test_an_id_names_its_process() -> None:
+    """Others of its machine look whether it is stopped."""
+    assert pid_of(new_participant()) == os.getpid()
+
+
+@pytest.mark.parametrize("other", ["", "a1", "f" * 32, "g" * 32])
+def test_an_id_of_other_software_names_none(other: str) -> None:
+    """It may have any length and digits."""
+    assert pid_of(other) is None
 
 
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:

@@ -20,6 +20,7 @@ from aionode.engine.transport.zenoh._defects.scarcity import refuse_scarcity
 from aionode.engine.transport.zenoh._defects.stale_transports import StaleTransports
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.connections.sockets import arrived_bytes, pair_of
+from aionode.engine.transport.zenoh.connections.stopped_peers import StoppedPeers
 from aionode.engine.transport.zenoh.discovery.graph_watcher import NodeDeclaration, Watcher
 from aionode.engine.transport.zenoh.discovery.observed import Observed
 from aionode.engine.transport.zenoh.discovery.other_domains import other_domains
@@ -107,6 +108,7 @@ class ZenohTransport(Transport):
             self._state, network, self._watcher, partial(listed, network.meeting_ports[0])
         )
         self._stale_transports = StaleTransports(self._state, network)
+        self._stopped_peers = StoppedPeers(self._state.connections.kinds)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
         self._presence: socket.socket | None = None  # in the list of this machine's sessions
@@ -185,6 +187,7 @@ class ZenohTransport(Transport):
         self._observed.start(session)
         self._recovery.start(session)
         self._stale_transports.start(session)
+        self._stopped_peers.start(session)
         await self._state.connections.wait_until_connected(expected)
         # Configured peers may be absent, so they are not expected.
         self._expected = expected - bool(self.network.near_peers or self.network.config_file)
@@ -309,6 +312,7 @@ class ZenohTransport(Transport):
         self._state.connections.stop()
         self._recovery.stop()
         self._stale_transports.stop()
+        self._stopped_peers.stop()
         self._observed.stop()
         self.peer_directory.stop()
         self._watcher.stop()

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
 
-from aionode.engine.transport.zenoh._defects.stale_transports import cut_participants
+from aionode.engine.transport.zenoh.connections.sockets import cut_participants
 from aionode.engine.transport.zenoh.discovery import router_matching
 from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
 from aionode.engine.transport.zenoh.session.settings import router_settings

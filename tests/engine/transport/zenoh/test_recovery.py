@@ -645,7 +645,7 @@ async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_
 ) -> None:
     """Its two connections were cut one after the other: Zenoh took the third for one of theirs."""
     monkeypatch.setattr(stale_transports, "DECLARED_S", 0.2)
-    cut_participants = stale_transports.cut_participants
+    cut_participants = _sockets.cut_participants
     cuts: list[set[str]] = []
 
     def cut(session: zenoh.Session, zids: set[str]) -> None:

@@ -18,10 +18,10 @@ import zenoh  # noqa: TID251  # makes real connections
 from aionode.engine.context import Context
 from aionode.engine.transport.zenoh._defects import closing as closing_defect
 from aionode.engine.transport.zenoh._defects import lingering
-from aionode.engine.transport.zenoh._defects.stale_transports import cut_participants
 from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.engine.transport.zenoh.connections.sockets import (
     Pair,
+    cut_participants,
     descriptors,
     duplicates,
     find,

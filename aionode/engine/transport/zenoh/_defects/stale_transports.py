@@ -19,10 +19,7 @@ import asyncio
 import logging
 import threading
 from collections import Counter
-from contextlib import suppress
 from typing import TYPE_CHECKING, Final
-
-import zenoh
 
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._connection_mend import (
@@ -31,7 +28,7 @@ from aionode.engine.transport.zenoh._defects._connection_mend import (
     ConnectionMend,
 )
 from aionode.engine.transport.zenoh.connections.connections import REMEMBERED
-from aionode.engine.transport.zenoh.connections.sockets import connections, cut
+from aionode.engine.transport.zenoh.connections.sockets import cut_participants
 
 if TYPE_CHECKING:
     from aionode.engine.transport.network import Network
@@ -126,9 +123,3 @@ class StaleTransports(ConnectionMend):
                     target=cut_participants, args=(session, silent.copy()), name="aionode-zenoh"
                 )
             )
-
-
-def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
-    """Cut the connections to some participants; in a thread."""
-    with suppress(zenoh.ZError):  # the session was closed meanwhile
-        cut(connections(session, zids))

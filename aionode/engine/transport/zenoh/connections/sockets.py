@@ -33,13 +33,13 @@ from contextlib import suppress
 from stat import S_ISREG
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import zenoh
+
 from aionode._process.socket_queue import queued_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
     from collections.abc import Set as AbstractSet
-
-    import zenoh
 
 __all__ = [
     "Address",
@@ -48,6 +48,7 @@ __all__ = [
     "arrived_bytes",
     "connections",
     "cut",
+    "cut_participants",
     "duplicates",
     "find",
     "info_of",
@@ -363,3 +364,9 @@ def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
             logger.debug("%s: the connection is cut", copy.getpeername())
             copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
             copy.shutdown(socket.SHUT_RDWR)
+
+
+def cut_participants(session: zenoh.Session, participants: AbstractSet[str]) -> None:
+    """Cut the connections to some participants, in a thread."""
+    with suppress(zenoh.ZError):  # the session was closed meanwhile
+        cut(connections(session, participants))

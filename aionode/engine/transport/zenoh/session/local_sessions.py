@@ -22,6 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from aionode._process.stopped import is_stopped
 from aionode.engine.transport.network import udp_sockets
 from aionode.engine.transport.zenoh.connections.config import LOOPBACK
 from aionode.errors import escaped, shortened
@@ -37,9 +38,6 @@ __all__ = [
 ]
 
 PROCESSES: Final = Path("/proc")
-
-STOPPED: Final = {"T", "t"}
-"""States of processes that a signal, or a debugger, has stopped; see proc(5)."""
 
 COMMAND: Final = 100
 """Maximum number of characters of a command line to show."""
@@ -123,9 +121,8 @@ def processes(group: int) -> dict[int, LocalProcess]:
 def process_in(folder: Path) -> LocalProcess:
     """Return what the system reveals about a process."""
     command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
-    state = (folder / "stat").read_text(errors="replace").rpartition(") ")[2][:1]
     text = shortened(escaped(" ".join(command.split())), COMMAND)  # in one line
-    return LocalProcess(int(folder.name), text, state in STOPPED)
+    return LocalProcess(int(folder.name), text, is_stopped(int(folder.name)))
 
 
 def address_in_list(group: int) -> str:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 import zenoh
 
 from aionode.clock import perf_ns
-from aionode.engine.transport.network import network_from
+from aionode.engine.transport.network import network_from, pid_of
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects.closing import cut_unanswered
 from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
@@ -285,7 +285,11 @@ def open_listed(network: Network, participant: str) -> Opened | None:
             answering_ports(p for p in probed_ports(network) if p not in {port, *others})
         )
         dialled = sorted(others | (unlisted & set(network.meeting_ports)))
-        settings = session_settings(network, (), Neighbours(port, tuple(dialled)))
+        neighbours = Neighbours(port, tuple(dialled))
+        # Routers cannot look, and tell other machines of it.
+        has_router = network.router_port in unlisted or bool(network.far_peers)
+        is_watched = pid_of(participant) is not None and not has_router
+        settings = session_settings(network, (), neighbours, is_watched=is_watched)
         session = zenoh.open(load_config(network, settings, participant))
         failed.pop_all()
     met = others & set(network.meeting_ports)

@@ -67,8 +67,19 @@ the others. Those that give it up connect anew, and all of it takes longer still
 """
 
 MOST_LEASE_MS: Final = 60_000
-"""The longest lease, which is that of ROS 2 nodes: any user of the machine can be listed as many
-processes."""
+"""The longest of these leases, which is that of ROS 2 nodes: any user of the machine can be listed
+as many processes."""
+
+KEEP_ALIVES: Final = 4
+"""Number of signs of life in a lease, as by default."""
+
+WATCHED_LEASE_MS: Final = 100_000
+WATCHED_KEEP_ALIVES: Final = 2
+"""The same for a session at whose process the others look (`StoppedPeers`), in milliseconds.
+
+With a hundred processes, signs of life are what wakes an idle one: at these intervals of 50 s, it
+wakes up 12 times a second.
+"""
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """Intervals at which an endpoint that does not answer is dialled again."""
@@ -88,7 +99,11 @@ class Neighbours:
 
 
 def session_settings(
-    network: Network, taken: Iterable[int], neighbours: Neighbours | None = None
+    network: Network,
+    taken: Iterable[int],
+    neighbours: Neighbours | None = None,
+    *,
+    is_watched: bool = False,
 ) -> dict[str, Any]:
     """Return the settings of a session, by key path, without those of `network.overrides`.
 
@@ -96,6 +111,7 @@ def session_settings(
         network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
         neighbours: What this machine lists; None if it lists nothing.
+        is_watched: Whether the others look at its process, as far as they are on this machine.
     """
     if network.config_file is not None:
         return {}
@@ -105,6 +121,9 @@ def session_settings(
     subnet = network.discovery_range is DiscoveryRange.SUBNET
     gossip: dict[str, Any] = {"scouting/gossip/enabled": not off}
     listed = neighbours.others if neighbours is not None else ()
+    lease_ms, keep_alives = min(LEASE_MS + LEASE_MS_EACH * len(listed), MOST_LEASE_MS), KEEP_ALIVES
+    if is_watched and not network.may_reach_far:
+        lease_ms, keep_alives = WATCHED_LEASE_MS, WATCHED_KEEP_ALIVES
     if neighbours is not None:
         listen = [neighbours.port]
         dial = [*neighbours.others, network.router_port]
@@ -135,7 +154,8 @@ def session_settings(
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
         "scouting/multicast/enabled": subnet,
-        "transport/link/tx/lease": min(LEASE_MS + LEASE_MS_EACH * len(listed), MOST_LEASE_MS),
+        "transport/link/tx/lease": lease_ms,
+        "transport/link/tx/keep_alive": keep_alives,
         **gossip,
         **blocked_sends.settings(),
         **half_open.settings(network),

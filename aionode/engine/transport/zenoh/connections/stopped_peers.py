@@ -1,0 +1,93 @@
+"""Gives up connections to processes of this machine that a signal or a debugger has stopped.
+
+Zenoh would notice by its lease: each process tells each other one, again and again, that it is
+alive. With many processes, that is what wakes an idle one. The system knows which processes are
+stopped, so each process looks at the others, which wakes none of them, and sessions that can be
+looked at have a long lease. Peers that cannot look, such as nodes of ROS 2 and those in other
+containers, notice a stopped process by that lease.
+
+A process that waits long for a processor is not stopped, and is not given up.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from typing import TYPE_CHECKING, Final
+
+from aionode._process.later import Later
+from aionode._process.stopped import is_stopped
+from aionode.engine.transport.network import pid_of
+from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh.connections.sockets import cut_participants
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    import zenoh
+
+__all__ = ["StoppedPeers"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+LOOK_S: Final = 2.5
+"""The interval of looks, in seconds."""
+
+LOOKS: Final = 4
+"""How often in a row a process must be seen stopped: it is given up after 7.5 to 10 s, as by a
+lease of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
+
+
+class StoppedPeers:
+    """Gives up the stopped processes among the peers of a session; belongs to the event loop.
+
+    Args:
+        participants: The connected sessions.
+    """
+
+    def __init__(self, participants: Collection[str]) -> None:
+        self._participants = participants
+        self._session: zenoh.Session | None = None
+        self._pids: dict[str, int | None] = {}
+        self._looks: dict[str, int] = {}  # how often each was seen stopped, in a row
+        self._later = Later()
+
+    def start(self, session: zenoh.Session) -> None:
+        """Look at the peers of a session from now on."""
+        self._session = session
+        self._later.call(LOOK_S, self._look)
+
+    def stop(self) -> None:
+        """Stop looking."""
+        self._later.cancel()
+        self._session = None
+        self._pids.clear()
+        self._looks.clear()
+
+    def _look(self) -> None:
+        session = self._session
+        if session is None:
+            return
+        self._later.call(LOOK_S, self._look)
+        known, looks = self._pids, self._looks
+        self._pids = {
+            zid: known[zid] if zid in known else pid_of(zid) for zid in self._participants
+        }
+        self._looks = {
+            zid: looks.get(zid, 0) + 1
+            for zid, pid in self._pids.items()
+            if pid is not None and is_stopped(pid)
+        }
+        lost = {zid for zid, count in self._looks.items() if count == LOOKS}
+        if lost:
+            pids = sorted(filter(None, map(self._pids.get, lost)))
+            logger.info(
+                "processes %s are stopped; cutting their connections, which Zenoh makes anew when "
+                "they go on",
+                ", ".join(map(str, pids[:5])),
+            )
+            start_thread(
+                threading.Thread(
+                    target=cut_participants, args=(session, lost), name="aionode-zenoh"
+                )
+            )
