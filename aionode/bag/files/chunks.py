@@ -9,11 +9,9 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from io import BytesIO
 from operator import itemgetter
 from typing import IO, TYPE_CHECKING, Final
 
-from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Chunk
@@ -32,6 +30,11 @@ HEAD: Final = struct.Struct("<BQ")
 
 MESSAGE: Final = struct.Struct("<HIQQ")
 """The header of a message: channel, sequence number, log time and publish time."""
+
+CHUNK: Final = struct.Struct("<QQQII")
+"""The beginning of a chunk: times, size, checksum, and the length of its compression's name."""
+
+LENGTH: Final = struct.Struct("<Q")
 
 Row = tuple[int, int, int, int, int, int]
 """A message: log time, channel, sequence, publish time, and the start and end of its bytes."""
@@ -75,10 +78,22 @@ def rows_of(
     opcode, length = HEAD.unpack(file.read(HEAD.size))
     if opcode != Opcode.CHUNK or length > size - index.chunk_start_offset - HEAD.size:
         raise McapError("there is no complete chunk")
-    content = checked_content(Chunk.read(ReadDataStream(BytesIO(file.read(length)))))
+    content = checked_content(chunk_of(file, length))
     rows = list(wanted_rows(content, channels, start_ns, end_ns))
     rows.sort(key=itemgetter(0))
     return content, iter(rows)
+
+
+def chunk_of(file: IO[bytes], length: int) -> Chunk:
+    """Return the chunk that begins where a file is, without copying what is in it."""
+    start_ns, end_ns, size, crc, text_length = CHUNK.unpack(file.read(CHUNK.size))
+    if text_length > length - CHUNK.size - LENGTH.size:
+        raise McapError("the name of its compression extends beyond it")
+    compression = file.read(text_length).decode()
+    (data_length,) = LENGTH.unpack(file.read(LENGTH.size))
+    if data_length > length - CHUNK.size - text_length - LENGTH.size:
+        raise McapError("its messages extend beyond it")
+    return Chunk(compression, file.read(data_length), end_ns, start_ns, crc, size)
 
 
 def wanted_rows(
