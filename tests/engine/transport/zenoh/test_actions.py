@@ -63,7 +63,7 @@ def statuses(data: bytes) -> list[int]:
 
 
 class PlainPeer:
-    """Asks services and hears topics by keys and bytes."""
+    """Calls services and receives topics with raw keys and bytes."""
 
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
@@ -96,7 +96,7 @@ class PlainPeer:
         return await answer
 
     def hear(self, part: str) -> Collector:
-        """Collect what comes on a topic."""
+        """Collect the samples of a topic."""
         heard = Collector()
         self._session.declare_subscriber(key(part), lambda s: heard(s.payload.to_bytes()))
         return heard
@@ -113,7 +113,7 @@ async def node() -> AsyncIterator[Node]:
 
 
 async def test_a_plain_client_drives_a_server(node: Node) -> None:
-    """Goal, feedback, status, result: each byte as ROS 2 has it."""
+    """Goal, feedback, status and result are those of ROS 2, byte for byte."""
     may_end = asyncio.Event()
 
     async def execute(goal: Goal) -> Fibonacci.Result:
@@ -184,7 +184,7 @@ async def test_a_plain_client_cancels_a_goal(node: Node) -> None:
 
 
 async def until_heard(peer: PlainPeer) -> None:
-    """Wait until the server hears the peer, whose question means nothing and may be repeated."""
+    """Wait until the server hears the peer, whose query has no effect and may be repeated."""
     while True:
         with suppress(TimeoutError):
             async with asyncio.timeout(0.2):
@@ -193,7 +193,7 @@ async def until_heard(peer: PlainPeer) -> None:
 
 
 async def test_a_plain_client_gets_a_result_and_no_error_of_an_aborted_goal(node: Node) -> None:
-    """ROS knows no error replies: the reason goes to clients of aionode only, who ask for it."""
+    """ROS has no error replies: the reason goes only to aionode clients, which request it."""
 
     async def execute(_goal: Goal) -> Fibonacci.Result:
         raise LookupError("lost")
@@ -217,7 +217,7 @@ async def test_a_plain_client_gets_a_result_and_no_error_of_an_aborted_goal(node
 
 
 class PlainServer:
-    """An action server of queryables, publishers and tokens, with the bytes of the vectors."""
+    """An action server made of queryables, publishers and tokens, with the vectors' bytes."""
 
     def __init__(self, session: zenoh.Session, result: bytes = CDR["GetResult_Response"]) -> None:
         self._session = session
@@ -276,7 +276,7 @@ class PlainServer:
         self._topics[part].put(HEADER + body, attachment=attachment(1))
 
     def finish(self, body: bytes) -> None:
-        """Answer those who wait for a result."""
+        """Answer the pending requests for a result."""
         for query in self.waiting:
             self.reply(query, body)
         self.waiting.clear()
@@ -324,7 +324,7 @@ GOAL_NUMBER = int.from_bytes(GOAL_ID, "big")
 
 
 async def test_an_aborted_goal_of_a_plain_server_has_no_reason(node: Node) -> None:
-    """Such a server does not know the other id, and says so as of any unknown goal."""
+    """Such a server treats the other id like any unknown goal."""
     client = node.create_action_client(Fibonacci, "fibonacci")
     with raw_session() as session:
         PlainServer(session, HEADER + struct.pack("<b3xI", GoalStatus.ABORTED, 0))

@@ -1,4 +1,4 @@
-"""The wait for the tokens of connected peers."""
+"""Waiting for the tokens of connected peers."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ async def transport(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[ZenohTrans
 async def test_it_is_waited_while_something_arrives(
     transport: ZenohTransport, monkeypatch: pytest.MonkeyPatch, received: int, unread: int
 ) -> None:
-    """On a busy machine Zenoh reads thousands of tokens for seconds before it tells of one."""
+    """On a busy machine, Zenoh reads thousands of tokens for seconds before it reports one."""
     loop = asyncio.get_running_loop()
     numbers = count()
 
@@ -53,7 +53,7 @@ async def test_it_is_waited_while_something_arrives(
 async def test_signs_of_life_are_not_waited_for(
     transport: ZenohTransport, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All other peers send them beside one that is frozen."""
+    """All other peers keep sending them while one is frozen."""
     numbers = count()
     monkeypatch.setattr(_transport, "arrived_bytes", lambda _: {"peer": (4 * next(numbers), 4)})
 
@@ -61,7 +61,7 @@ async def test_signs_of_life_are_not_waited_for(
 
 
 async def test_an_answer_that_zenoh_has_given_up_is_incomplete(transport: ZenohTransport) -> None:
-    """It ends as well, with an error among what has come."""
+    """It ends as well, with an error among the replies."""
 
     def get(_: str, handler: Any, **__: object) -> None:
         handler.callback(SimpleNamespace(ok=None))

@@ -1,4 +1,4 @@
-"""The number of announcements of others that a context keeps."""
+"""The limit on announcements of others that a context keeps."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LIMIT = 4_000_000
 
 
 def taken(limit: AnnouncedLimit, participant: str, count: int) -> int:
-    """Return how many of some tokens of a participant were taken."""
+    """Return how many of some tokens of a participant were accepted."""
     return sum(limit.admit(participant, f"{participant} {number:04}") for number in range(count))
 
 
@@ -48,7 +48,7 @@ def test_the_size_of_a_token_counts() -> None:
 
 
 def test_a_connected_participant_keeps_its_place() -> None:
-    """Invented names, which are unlimited in number, take the rest only."""
+    """Invented participants, which are unlimited in number, get only the rest."""
     limit = AnnouncedLimit(LIMIT, {"robot"})
     for number in range(100):
         taken(limit, f"invented{number}", 100)
@@ -82,7 +82,7 @@ def test_contexts_that_acknowledge_are_limited_present_or_gone() -> None:
 
 
 def test_namespaces_of_bridges_are_limited(caplog: pytest.LogCaptureFixture) -> None:
-    """Each is compared with each name of this context, and is remembered for good."""
+    """Each is compared with each name of this context, and remembered forever."""
     state = BridgeState("a1", DOMAIN_ID, MachineTime(), LoopWaker())
     for number in range(150):
         state.add_bridge(f"{number:x}", f"robot{number}/")
@@ -94,7 +94,7 @@ def test_namespaces_of_bridges_are_limited(caplog: pytest.LogCaptureFixture) -> 
 
 
 def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> None:
-    """The log says once in a while that something was left out, and which limit it was."""
+    """The log occasionally says that something was left out, and by which limit."""
     limit = AnnouncedLimit(LIMIT)
     count = taken(limit, "a", 10_000)
     for number in range(count):
@@ -109,7 +109,7 @@ def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> Non
 async def test_a_flood_is_left_out_of_the_graph_and_has_its_place_when_there_is_room(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Others that come later are in it all the same."""
+    """Later announcements of others are still in it."""
     monkeypatch.setattr(announced, "RESERVED_BYTES", 10_000)
     monkeypatch.setattr(graph_watcher, "FILL_S", 0.05)
     async with quiet_node("a", Context(graph_bytes=100_000)) as a:

@@ -1,4 +1,4 @@
-"""Large messages, which a thread of their own sends."""
+"""Large messages, which a separate thread sends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ LARGE = UInt8MultiArray(data=bytes(2_000_000))
 
 
 async def test_what_was_published_before_the_end_of_its_publisher_arrives() -> None:
-    """Zenoh's publisher must not be taken away from the thread that sends through it."""
+    """Zenoh's publisher must not be removed while the thread sends through it."""
     async with (
         two_contexts() as (first, second),
         quiet_node("sender", first) as send_thread,

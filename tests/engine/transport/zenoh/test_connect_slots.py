@@ -40,7 +40,7 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
 
 
 class Visits:
-    """How many connect at a time, and in all."""
+    """How many connect at a time, and in total."""
 
     def __init__(self) -> None:
         self.now = self.most = self.all = 0
@@ -66,7 +66,7 @@ class Visits:
 async def test_one_process_connects_at_a_time_for_two_processors(
     network: Network, monkeypatch: pytest.MonkeyPatch, processors: int, most: int
 ) -> None:
-    """All others wait for it, and each gets its slot. Five at most: a port each stands for it."""
+    """All others wait for it, and each gets its slot. There are at most five, each with a port."""
     monkeypatch.setattr(_connect_slots, "processors", lambda: processors)
     visits = Visits()
     await visits.visit_together(network)
@@ -77,7 +77,7 @@ async def test_one_process_connects_at_a_time_for_two_processors(
 async def test_nobody_waits_while_a_processor_is_free(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One that connects may be waiting for another process, which may be frozen."""
+    """A process that connects may be waiting for another one, which may be frozen."""
     monkeypatch.setattr(_connect_slots, "is_idle", lambda: True)
     visits = Visits()
     await visits.visit_together(network)
@@ -88,7 +88,7 @@ async def test_nobody_waits_while_a_processor_is_free(
 async def test_nobody_waits_if_there_is_no_other_process(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nor if a context does not look for any, or no port can stand for a slot."""
+    """Nor if a context does not look for any, or no port is available for slots."""
     monkeypatch.setattr(_connect_slots, "SLOT_S", 1000.0)
     alone = network_from({"AIONODE_MEETING_PORTS": ",".join(map(str, free_ports(6)))})
     off = network_from(os.environ, discovery_range=DiscoveryRange.OFF)
@@ -112,7 +112,7 @@ async def test_a_process_that_does_not_go_on_is_not_waited_for(
 
 @pytest.fixture
 def foreign_slots(network: Network) -> Iterator[None]:
-    """Have a process of another user keep all slots."""
+    """Have a process of another user hold all slots."""
     if os.getuid() != 0:
         pytest.skip("only root may start a process of another user")
     program = (
@@ -136,7 +136,7 @@ def foreign_slots(network: Network) -> Iterator[None]:
 
 @pytest.mark.usefixtures("foreign_slots")
 async def test_a_slot_that_another_user_keeps_costs_a_third_of_a_second(network: Network) -> None:
-    """Each start took three seconds longer: whoever binds the port decides about all others."""
+    """Each start took three seconds longer, since whoever binds the port blocks all others."""
     loop = asyncio.get_running_loop()
     began_s = loop.time()
     with one_at_a_time(network.meeting_ports[0]):
@@ -151,7 +151,7 @@ async def test_a_slot_that_another_user_keeps_costs_a_third_of_a_second(network:
 async def test_it_is_waited_longer_while_others_appear(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where a hundred start the last one waits for a minute."""
+    """If a hundred start, the last one waits for a minute."""
     lists = iter([{1}, {1, 2}, {1, 2, 3}, {1, 2, 3}])
     monkeypatch.setattr(_connect_slots, "SLOT_S", 0.01)
     monkeypatch.setattr(_connect_slots, "listed", lambda _: next(lists))
@@ -184,7 +184,7 @@ async def test_waiting_for_a_slot_can_be_cancelled(network: Network) -> None:
 def test_a_machine_is_busy_if_more_threads_run_than_it_has_processors(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, *, idle: bool
 ) -> None:
-    """Where it does not tell, nobody is to wait."""
+    """Where that is unknown, nobody should wait."""
     load = tmp_path / "loadavg"
     monkeypatch.setattr(_connect_slots, "LOAD", load)
     monkeypatch.setattr(_connect_slots, "processors", lambda: 2)

@@ -1,4 +1,4 @@
-"""The connections of a session, which all parts of a context share."""
+"""The connections of a session, shared by all parts of a context."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.one_loop
 def tell(
     connections: Connections, zid: str, kind: zenoh.WhatAmI = zenoh.WhatAmI.PEER, *, is_made: bool
 ) -> None:
-    """Have Zenoh tell of a connection."""
+    """Have Zenoh report a connection."""
     transport = SimpleNamespace(zid=zid, whatami=kind)
     event_kind = zenoh.SampleKind.PUT if is_made else zenoh.SampleKind.DELETE
     event: Any = SimpleNamespace(kind=event_kind, transport=transport)
@@ -39,7 +39,7 @@ def connections() -> Connections:
 async def test_a_peer_that_was_lost_and_is_connected_again_has_returned(
     connections: Connections,
 ) -> None:
-    """A peer that is new has not: its tokens are on their way."""
+    """A new peer has not: its tokens are still in transit."""
     told: list[ConnectionChange] = []
     connections.on_change.append(told.append)
     tell(connections, "b2", is_made=True)
@@ -56,7 +56,7 @@ async def test_a_peer_that_was_lost_and_is_connected_again_has_returned(
 
 
 async def test_a_client_that_leaves_is_not_lost(connections: Connections) -> None:
-    """It dials by itself, and nobody else can."""
+    """It dials by itself, and nobody else can dial it."""
     tell(connections, "c3", zenoh.WhatAmI.CLIENT, is_made=True)
     tell(connections, "c3", zenoh.WhatAmI.CLIENT, is_made=False)
 
@@ -86,7 +86,7 @@ async def test_lost_sessions_are_remembered_up_to_a_limit(
 async def test_a_connection_that_is_made_anew_at_once_was_lost_all_the_same(
     connections: Connections,
 ) -> None:
-    """What vanished with it may still have to return."""
+    """Tokens that vanished with it may still have to return."""
     for is_made in (True, False, True):
         tell(connections, "b2", is_made=is_made)
 
@@ -97,7 +97,7 @@ async def test_a_connection_that_is_made_anew_at_once_was_lost_all_the_same(
 async def test_tokens_that_vanish_long_after_a_loss_were_withdrawn(
     connections: Connections, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Their session is connected again, and has ended something by itself."""
+    """Their session is connected again, and has withdrawn something itself."""
     for is_made in (False, True):
         tell(connections, "b2", is_made=is_made)
     now_ns = perf_ns() + MOMENT_NS

@@ -1,4 +1,4 @@
-"""Subscribers for control messages: one for each key that somebody in this context listens to."""
+"""Subscribers for control messages: one for each key with a listener in this context."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Session:
     """A session that records what is declared in it.
 
     Attributes:
-        callbacks: Where samples of each key go.
-        declared: How many subscribers were declared.
+        callbacks: The callbacks for samples, by key.
+        declared: The number of declared subscribers.
     """
 
     def __init__(self) -> None:

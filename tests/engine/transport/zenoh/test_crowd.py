@@ -1,6 +1,6 @@
-"""The event loop leaves Zenoh to threads while others have announced thousands of things.
+"""The event loop leaves Zenoh to threads while others have announced thousands of tokens.
 
-Zenoh drops what a connection has announced in one piece, and no put goes on meanwhile.
+Zenoh drops everything that a connection has announced at once, which blocks all puts.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Gate:
-    """Holds back what a thread of a publisher sends, as Zenoh does while it drops declarations."""
+    """Blocks a publisher's thread, like Zenoh while it drops declarations."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.opened = threading.Event()
@@ -56,7 +56,7 @@ def writer_of(publisher: Publisher[Int32]) -> ZenohWriter:
 
 
 def is_direct(writer: ZenohWriter) -> bool:
-    """Return whether the loop puts messages into Zenoh itself, as beside few others."""
+    """Return whether the loop itself puts messages into Zenoh, as without a crowd."""
     return writer.sender.puts_small_at_once
 
 
@@ -74,7 +74,7 @@ async def state() -> AsyncIterator[SessionState]:
 
 
 def test_there_is_a_crowd_while_more_than_some_thousand_tokens_are_kept() -> None:
-    """It is told as it begins, and as it ends."""
+    """Its start and its end are reported."""
     limit = AnnouncedLimit(64 << 20)
     told: list[bool] = []
     limit.on_crowded.append(lambda: told.append(limit.is_crowded))
@@ -87,7 +87,7 @@ def test_there_is_a_crowd_while_more_than_some_thousand_tokens_are_kept() -> Non
 
 
 def test_there_is_a_crowd_while_anything_is_left_out() -> None:
-    """Zenoh keeps that too, and nobody knows how much it is."""
+    """Zenoh keeps that as well, and its amount is unknown."""
     limit = AnnouncedLimit(0)
     limit.admit("liar", "x" * announced.RESERVED_BYTES)
     assert limit.is_crowded
@@ -99,7 +99,7 @@ def test_there_is_a_crowd_while_anything_is_left_out() -> None:
 async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Beyond the depth of their publisher, as well: it is no reader that is slow."""
+    """Even beyond the depth of their publisher, since no reader is slow."""
     gate = Gate(monkeypatch)
     async with (
         two_contexts(link=False) as (first, second),
@@ -158,7 +158,7 @@ async def test_all_else_waits_in_threads_too(
 async def test_the_loop_puts_again_a_while_after_the_crowd(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Zenoh tells of the first that it drops long before the last."""
+    """Zenoh reports the first token that it drops long before the last."""
     monkeypatch.setattr(session_state, "CALM_S", 0.05)
     async with quiet_node("talker") as talker:
         writer = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))

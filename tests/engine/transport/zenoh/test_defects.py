@@ -1,4 +1,4 @@
-"""Each defect of Zenoh that is worked around is described, shown by a program, and has a switch."""
+"""Each worked-around defect of Zenoh has a description, a program that shows it, and a switch."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VARIABLE = "AIONODE_ZENOH_UNMENDED"
 
 
 def test_each_defect_has_a_program_that_shows_it() -> None:
-    """A mend whose defect nothing shows stays for ever."""
+    """Otherwise its workaround would stay forever."""
     programs = {path.stem for path in (ROOT / "tests/zenoh_defects").glob("[a-z]*.py")}
 
     assert programs == defects()
@@ -28,7 +28,7 @@ def test_each_defect_has_a_program_that_shows_it() -> None:
 
 @pytest.mark.parametrize("name", sorted(defects()))
 def test_a_defect_is_described(name: str) -> None:
-    """Whoever tries a new version of Zenoh reads there what may go."""
+    """Whoever tries a new version of Zenoh finds there what can be removed."""
     source = (Path(_defects.__path__[0]) / f"{name}.py").read_text(encoding="utf-8")
     text = ast.get_docstring(ast.parse(source)) or ""
     titles = [line for line in text.splitlines() if line.endswith(":") and line[0] != " "]
@@ -38,7 +38,7 @@ def test_a_defect_is_described(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(defects()))
 def test_a_defect_has_a_switch(name: str) -> None:
-    """It is asked for by the name of its module, wherever the mend is."""
+    """It has the name of the defect's module, wherever the workaround is."""
     asked = (f'is_mended("{name}")', f'defect = "{name}"')
     modules = sorted((ROOT / "aionode/engine/transport/zenoh").rglob("*.py"))
 
@@ -46,7 +46,7 @@ def test_a_defect_has_a_switch(name: str) -> None:
 
 
 def test_mends_are_switched_off_by_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Zenoh's own values are left then."""
+    """Zenoh's own values then stay."""
     network = network_from({})
     key, admin = "transport/shared_memory/enabled", "adminspace/enabled"
     assert session_settings(network, ())[key] is False
@@ -59,7 +59,7 @@ def test_mends_are_switched_off_by_the_environment(monkeypatch: pytest.MonkeyPat
 
 
 async def test_a_name_of_no_defect_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It would switch nothing off, and the program would show nothing."""
+    """It would disable nothing, and the program would show nothing."""
     monkeypatch.setenv(VARIABLE, "lingerin")
     with pytest.raises(ConfigurationError, match=r"AIONODE_ZENOH_UNMENDED.*lingerin.*lingering"):
         async with Context():

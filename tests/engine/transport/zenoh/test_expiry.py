@@ -1,4 +1,4 @@
-"""Messages that a publisher on Zenoh does not send any more."""
+"""Expired messages, which a publisher on Zenoh no longer sends."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GID = bytes(16)
 def test_what_has_waited_for_too_long_is_not_sent(
     lifespan_ns: int, now_ns: int, is_sent: bool
 ) -> None:
-    """Its age is known when its turn comes, and not before."""
+    """Its age is known only when its turn comes."""
     sent: list[int] = []
     time_ns = 1000
     send = unless_expired(

@@ -1,4 +1,4 @@
-"""Beside ROS 2 Humble, whose nodes write no type hashes: both ways with a plain Zenoh peer.
+"""Interoperation with ROS 2 Humble, whose nodes write no type hashes, by a plain Zenoh peer.
 
 The peer knows only the wire format: keys, tokens, attachments and bytes.
 """
@@ -63,7 +63,7 @@ async def context() -> AsyncIterator[Context]:
 
 
 async def ask(session: zenoh.Session, key: str, payload: bytes) -> bytes:
-    """Return the answer of a service, asked again while the way to it is not known yet."""
+    """Return the answer of a service, retrying while no route to it is known."""
     for sequence in range(1, 1000):
         replies = Collector()
         session.get(
@@ -84,7 +84,7 @@ async def ask(session: zenoh.Session, key: str, payload: bytes) -> bytes:
 
 
 async def test_tokens_and_samples_are_those_of_humble(context: Context) -> None:
-    """A node of Humble matches and hears by these texts alone."""
+    """A Humble node matches and receives by these texts alone."""
     async with quiet_node("talker", context) as node:
         publisher = node.create_publisher(String, "chatter", 10)
         with raw_session() as session:
@@ -106,7 +106,7 @@ async def test_tokens_and_samples_are_those_of_humble(context: Context) -> None:
 
 
 async def test_samples_of_humble_are_heard(context: Context) -> None:
-    """By a subscription that has the type, though nothing tells its definition."""
+    """A subscription with the type receives them, though nothing identifies its definition."""
     async with quiet_node("listener", context) as node:
         subscription = node.create_subscription(get_message("std_msgs/msg/String"), "chatter")
         with raw_session() as session:
@@ -214,7 +214,7 @@ async def test_a_humble_node_has_no_service_that_humble_does_not_know(context: C
 async def test_a_node_beside_a_humble_robot_says_what_to_set(
     ros_distro: str | None, expected: str | None, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Otherwise both sides look healthy and hear nothing."""
+    """Otherwise both sides look healthy and receive nothing."""
     caplog.set_level(logging.WARNING)
     async with Context(ros_distro=ros_distro) as context, quiet_node("listener", context) as node:
         node.create_subscription(String, "chatter", None)

@@ -57,7 +57,7 @@ PROFILES = {
 
 
 def test_each_token_is_read_and_written_back() -> None:
-    """What one character of it loses is wrong in `ros2 topic info -v`, or in the gid."""
+    """A single wrong character shows in `ros2 topic info -v`, or changes the gid."""
     for text in TOKENS:
         token = parse_token(text)
 
@@ -70,7 +70,7 @@ def test_each_token_is_read_and_written_back() -> None:
 
 @pytest.mark.parametrize("sample", RECORDED["samples"], ids=lambda sample: sample["key"][3:20])
 def test_the_gid_of_a_sample_is_that_of_its_token(sample: dict[str, Any]) -> None:
-    """So a message is counted for its publisher."""
+    """So that a message is attributed to its publisher."""
     key = parse_data_key(sample["key"])
     extra = attachment.unpack(bytes.fromhex(sample["attachment"]))
     assert key is not None
@@ -126,7 +126,7 @@ def create_recorded(node: Node) -> None:
 
 
 async def test_the_same_nodes_declare_the_same() -> None:
-    """Only ids and their order differ, and what is listed above."""
+    """Only ids, their order, and what is listed above differ."""
     async with (
         Context() as context,
         Node("cap", context=context) as cap,

@@ -1,4 +1,4 @@
-"""The router of this machine to static peers: which process opens it, and which replaces it."""
+"""This machine's router to static peers: which process opens it, and which replaces it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def port_of(context: Context) -> int:
 
 
 async def test_the_first_process_with_static_peers_opens_a_router() -> None:
-    """The next one finds it there, and all others with it."""
+    """The next one finds it, and through it all others."""
     async with (
         Context(static_peers=[FAR]) as first,
         Context(static_peers=[FAR]) as second,
@@ -91,7 +91,7 @@ async def test_beside_a_router_it_only_links_that_one() -> None:
 async def test_without_peers_on_other_machines_there_is_no_router(
     options: dict[str, object],
 ) -> None:
-    """What is not asked for does not listen."""
+    """Nothing listens without being requested."""
     async with Context(**options) as context:  # type: ignore[arg-type]
         assert router_of(context) is None
         assert not answering_ports([port_of(context)])

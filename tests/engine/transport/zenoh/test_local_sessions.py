@@ -87,7 +87,7 @@ def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int
 
 
 def test_nothing_that_is_sent_to_a_listed_session_is_kept(group: int) -> None:
-    """Whatever user it comes from."""
+    """Whichever user sends it."""
     with (
         closing(announce(group, 4711)) as presence,
         closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as one,
@@ -101,7 +101,7 @@ def test_nothing_that_is_sent_to_a_listed_session_is_kept(group: int) -> None:
 def test_there_is_no_list_where_the_system_hides_it(
     group: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """As a sandbox may; gossip is used instead, and all others dial such a session."""
+    """As in a sandbox; gossip is used instead, and all others dial such a session."""
     monkeypatch.setattr(_network, "UDP_SOCKETS", tmp_path / "hidden")
 
     assert listed(group) is None
@@ -134,7 +134,7 @@ def test_a_reserved_port_can_be_listened_on_and_is_given_to_nobody_else() -> Non
 
 
 def test_the_user_of_a_port_is_known() -> None:
-    """Whoever keeps it may be another user, who is not waited for."""
+    """It may be held by another user, who is not waited for."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
         one.bind(("127.0.0.1", 0))
         port = one.getsockname()[1]

@@ -31,7 +31,7 @@ PATIENCE_S = 20.0
 
 
 class Heard:
-    """Lets a test wait until a context was told whether there are unannounced peers."""
+    """Lets a test wait until a context knows whether there are unannounced peers."""
 
     def __init__(self, transport: ZenohTransport) -> None:
         self.transport = transport
@@ -121,7 +121,7 @@ def ignore(_: object) -> None:
 
 
 async def test_a_plain_session_is_an_unannounced_peer_while_it_is_connected(heard: Heard) -> None:
-    """It may subscribe to anything without a sign."""
+    """It may subscribe to anything unnoticed."""
     assert not heard.peer_directory.has_unannounced_peers
 
     with raw_session():
@@ -209,7 +209,7 @@ async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
 
 
 async def test_a_client_of_one_context_is_an_unannounced_peer_to_all(heard: Heard) -> None:
-    """Zenoh brings it what the others publish, and only that context sees it."""
+    """Zenoh sends it what the others publish, and only that context sees it."""
     async with context("b2") as second:
         other = Heard(second)
         await heard.past()
@@ -222,7 +222,7 @@ async def test_a_client_of_one_context_is_an_unannounced_peer_to_all(heard: Hear
 
 
 async def test_retransmissions_arrive_in_order_at_their_recipient() -> None:
-    """All of it, however fast it is sent."""
+    """All of them, however fast they are sent."""
     count = 3000
     async with context("a1") as first, context("b2") as second, context("c3") as third:
         got, stray = Collector(), Collector()
@@ -280,7 +280,7 @@ async def test_closing_leaves_nothing_behind() -> None:
 
 
 async def test_it_opens_again() -> None:
-    """With the peers of that time."""
+    """With the peers present at that time."""
     transport = ZenohTransport("a1", network_from(os.environ))
     heard = Heard(transport)
     for _ in range(2):
@@ -293,7 +293,7 @@ async def test_it_opens_again() -> None:
 
 
 class Stuck:
-    """A session with a peer that hangs: whatever is sent there waits.
+    """A session with a hanging peer: everything sent there waits.
 
     Attributes:
         entered: Set once something waits.
@@ -313,7 +313,7 @@ class Stuck:
 async def test_a_stuck_peer_holds_up_no_large_message_to_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Both waited in the thread that sends all large messages."""
+    """Both used to wait in the thread that sends all large messages."""
     stuck = Stuck()
     done = asyncio.Event()
     async with context("a1") as transport:

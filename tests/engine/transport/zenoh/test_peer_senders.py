@@ -1,4 +1,4 @@
-"""Requests and replies towards peers of which any may be frozen."""
+"""Requests and replies to peers, any of which may be frozen."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def waited(gate: threading.Event) -> None:
 async def test_thousands_of_peers_that_read_nothing_share_a_few_threads(
     peers: PeerSenders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever announces them would else have this process start as many, until it cannot."""
+    """Otherwise whoever announces them could exhaust this process's threads."""
     monkeypatch.setattr(peer_senders, "MOST_THREADS", 3)
     gate, sent = threading.Event(), Sent()
     for number in range(100):
@@ -77,7 +77,7 @@ async def test_thousands_of_peers_that_read_nothing_share_a_few_threads(
 
 
 async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: PeerSenders) -> None:
-    """A thread between would cost latency."""
+    """A thread in between would add latency."""
     sent = Sent()
     for _ in range(10_000):
         peers.send(("a",), 100, sent)
@@ -88,7 +88,7 @@ async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: PeerSenders) 
 async def test_a_peer_that_gives_no_sign_of_life_is_sent_to_from_a_thread(
     peers: PeerSenders,
 ) -> None:
-    """What the loop has sent by then fits into the queues between, so it never waits."""
+    """What the loop has sent until then fits into the queues, so it never waits."""
     sent = Sent()
     for _ in range(1000):
         peers.send(("a",), 1_000, sent)
@@ -99,7 +99,7 @@ async def test_a_peer_that_gives_no_sign_of_life_is_sent_to_from_a_thread(
 
 
 async def test_a_peer_that_hangs_holds_up_no_other(peers: PeerSenders) -> None:
-    """Each has its own thread; and while that is busy the loop sends nothing there either."""
+    """Each has its own thread; while that is busy, the loop sends nothing there either."""
     gate = threading.Event()
     sent = Sent()
     peers.send(("frozen",), 2 * ALLOWANCE_BYTES, partial(waited, gate))
@@ -140,7 +140,7 @@ async def test_nothing_is_sent_to_a_peer_that_takes_nothing_until_it_does(
 
 
 async def test_a_thread_looks_now_and_then_whether_its_peer_takes_what_it_sends() -> None:
-    """Each look goes through all descriptors of the process."""
+    """Each check goes through all descriptors of the process."""
     waker = LoopWaker()
     waker.open(asyncio.get_running_loop())
     looks = 0

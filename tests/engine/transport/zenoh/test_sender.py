@@ -1,4 +1,4 @@
-"""Who puts the messages of a publisher into Zenoh."""
+"""Which thread puts a publisher's messages into Zenoh."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Waiting:
-    """A queue of which a test says how many messages wait."""
+    """A queue whose length a test sets."""
 
     def __init__(self, limit: int = 0) -> None:
         self.waiting, self.limit = 0, limit
@@ -68,7 +68,7 @@ def sender(
 def test_the_readers_of_a_message_decide_who_puts_it(
     qos: QoSProfile, others: bool, options: Any, size: int, sent_by: SentBy
 ) -> None:
-    """The loop never waits, and no reader loses what it may not lose."""
+    """The loop never waits, and no reader loses a message that must arrive."""
     made = sender(qos, **options)
     made.note_others(present=others)
 

@@ -1,4 +1,4 @@
-"""Services between contexts: requests are queries, as rmw_zenoh_cpp has them."""
+"""Services between contexts: requests are queries, as in rmw_zenoh_cpp."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def state_of(context: Context) -> SessionState:
 
 
 async def test_many_calls_at_once_each_get_their_answer() -> None:
-    """More than are sent from the loop at once, too."""
+    """Even more than the loop sends at once."""
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -126,7 +126,7 @@ async def test_many_calls_at_once_each_get_their_answer() -> None:
 async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A thousand did once, and the clients of the others were told that the server went away."""
+    """The limit was a thousand, and other clients were told that the server had gone."""
     monkeypatch.setenv("AIONODE_LINK", "off")
     waiting, more = 10_000, 25
     async with (
@@ -169,7 +169,7 @@ async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
 
 
 def test_no_client_takes_all_the_room_of_requests() -> None:
-    """Each may have three times as much as is left; a single request always fits."""
+    """Each may have three times the remaining room; a single request always fits."""
     room = RequestRoom(1000)
     requests = [object() for _ in range(3000)]
 
@@ -243,7 +243,7 @@ async def test_a_failing_handler_tells_the_client_at_once() -> None:
 
 
 async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
-    """No caller waits for ever, and the next server is used."""
+    """No caller waits forever, and the next server is used."""
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -271,7 +271,7 @@ async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
 
 
 async def test_a_request_that_was_given_up_is_not_served() -> None:
-    """The server gets the cancellation, and does no useless work."""
+    """The server gets the cancellation, and does no unnecessary work."""
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -442,7 +442,7 @@ async def test_plain_text_in_place_of_an_answer_is_an_error_with_that_text() -> 
 async def test_an_answer_that_is_none_is_an_error_and_logged_once(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """The caller must not wait for ever for a server with another definition."""
+    """The caller must not wait forever for a server with another definition."""
     async with quiet_node("client") as node:
         with (
             raw_session() as session,
@@ -459,7 +459,7 @@ async def test_an_answer_that_is_none_is_an_error_and_logged_once(
 
 
 async def test_a_server_that_says_nothing_and_ends_is_unavailable() -> None:
-    """A query that is dropped ends the call."""
+    """A dropped query ends the call."""
     async with quiet_node("client") as node:
         with raw_session() as session, raw_server(session, lambda query: query.drop()):
             client = node.create_client(AddTwoInts, "add")
@@ -469,7 +469,7 @@ async def test_a_server_that_says_nothing_and_ends_is_unavailable() -> None:
 
 
 async def test_a_request_that_found_no_way_is_sent_again() -> None:
-    """The token of a server can be seen shortly before requests find their way to it."""
+    """A server's token may be visible shortly before requests can reach it."""
     asked = 0
 
     def answer_late(query: zenoh.Query) -> None:
@@ -523,7 +523,7 @@ def remembering(heard: list[Any], response: Any) -> Callable[[Any], Any]:
 
 
 def test_an_error_keeps_its_type_and_text() -> None:
-    """What the server raised is what the client reads."""
+    """The client gets the error that the server raised."""
     error = parse_error(error_payload("ValueError", "too large: 5 \N{MICRO SIGN}m"), "/s")
 
     assert (error.service, error.error_type) == ("/s", "ValueError")

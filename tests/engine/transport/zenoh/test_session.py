@@ -1,4 +1,4 @@
-"""Opening and closing: what cannot be opened is said in words, and nothing is left behind."""
+"""Opening and closing sessions: failures are explained, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_ports_answer_in_a_process_with_more_than_1023_descriptors() -> None:
 
 
 def held(stack: ExitStack, ports: Iterable[int], *, listening: bool = True) -> None:
-    """Take ports as programs that do not speak Zenoh do."""
+    """Hold ports like programs that do not speak Zenoh."""
     for port in ports:
         one = stack.enter_context(socket.socket())
         one.bind(("127.0.0.1", port))
@@ -71,7 +71,7 @@ def meeting_ports(monkeypatch: pytest.MonkeyPatch, count: int) -> list[int]:
 
 
 def sayings(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
-    """Return level and text of what was said about ports that others hold."""
+    """Return level and text of log lines about ports held by others."""
     return [
         (record.levelno, record.getMessage())
         for record in caplog.records
@@ -124,7 +124,7 @@ async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
 async def test_one_line_says_that_processes_cannot_meet(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """With what was found, and what to do."""
+    """It says what was found, and what to do."""
     list_nothing(monkeypatch)
     ports = meeting_ports(monkeypatch, 3)
     with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
@@ -141,7 +141,7 @@ async def test_one_line_says_that_processes_cannot_meet(
 async def test_listed_processes_meet_whatever_ports_others_have(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Where the machine lists them they need no port that all know."""
+    """If the machine lists them, they need no well-known port."""
     ports = meeting_ports(monkeypatch, 3)
     with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
         held(stack, ports)
@@ -185,7 +185,7 @@ async def test_a_process_that_cannot_list_or_be_listed_meets_all_others(
 async def test_a_port_that_another_program_has_is_passed_over(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, *, listening: bool
 ) -> None:
-    """Whether it listens there or only has it, for a connection of its own."""
+    """Whether it listens there, or uses it for an outgoing connection."""
     ports = meeting_ports(monkeypatch, 3)
     with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
         held(stack, ports[:2], listening=listening)
@@ -199,7 +199,7 @@ async def test_a_port_that_another_program_has_is_passed_over(
 
 
 async def test_a_setting_that_zenoh_does_not_know_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It comes from a variable that was set long ago."""
+    """It may come from a variable that was set long ago."""
     monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", "mode='nonsense'")
     with pytest.raises(ConfigurationError, match="ZENOH_CONFIG_OVERRIDE: \"mode='nonsense'\""):
         async with Context():
@@ -292,7 +292,7 @@ async def test_opening_can_be_cancelled() -> None:
 
 
 async def test_work_in_a_thread_returns_its_result_and_leaves_no_thread() -> None:
-    """As does its error."""
+    """An error is raised likewise."""
     before = set(threading.enumerate())
 
     assert await run_in_own_thread(lambda: 5) == 5

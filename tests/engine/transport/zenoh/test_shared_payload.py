@@ -1,4 +1,4 @@
-"""Large payloads for several subscriptions are copied out of Zenoh once, and not kept for long."""
+"""Large payloads for several subscriptions are copied from Zenoh once, and not kept for long."""
 
 from __future__ import annotations
 

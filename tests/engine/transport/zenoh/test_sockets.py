@@ -1,4 +1,4 @@
-"""Zenoh's sockets are found among the descriptors of a process, and no other is touched."""
+"""Zenoh's sockets are found among a process's descriptors, and no other one is touched."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def dialling(host: str, port: int) -> Iterator[zenoh.Session]:
 
 @contextmanager
 def log_connection() -> Iterator[socket.socket]:
-    """A connection of the program that only sends, and has the options of one of Zenoh."""
+    """A connection of the program that only sends, with the same options as Zenoh's."""
     with (
         socket.create_server(("127.0.0.1", 0)) as listener,
         socket.create_connection(listener.getsockname()) as one,
@@ -85,7 +85,7 @@ def log_connection() -> Iterator[socket.socket]:
 
 
 def is_whole(one: socket.socket) -> bool:
-    """Return whether a connection takes data, and has its options."""
+    """Return whether a connection accepts data, and still has its options."""
     one.sendall(b"more")
     linger = one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
     info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 8)
@@ -116,7 +116,7 @@ def test_the_socket_of_each_end_is_found_by_the_addresses_of_its_link(
 async def test_a_closed_connection_is_not_taken_for_the_socket_that_listens(
     told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The system names that in its place, and it would have been cut instead."""
+    """The system returns the listening socket in its place, which would have been cut."""
     monkeypatch.setattr(_sockets, "CONNECTIONS" if told else "SOCK_DIAG", () if told else -1)
     with listening("127.0.0.1") as (one, port):
         with dialling("127.0.0.1", port):
@@ -234,7 +234,7 @@ def lingers(session: zenoh.Session) -> list[bool]:
 def test_a_file_that_gets_the_number_of_a_closed_socket_keeps_its_locks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Within the microsecond between the search and the duplicate."""
+    """Even within the microsecond between the search and the duplication."""
     monkeypatch.setattr(_sockets, "is_open", lambda _: True)
     with locks(tmp_path):
         names = [str(tmp_path / name) for name in ("record", "log.sqlite")]

@@ -1,4 +1,4 @@
-"""When a participant that has returned and declares nothing is connected anew, in stepped time."""
+"""When a returned participant that declares nothing is reconnected, in stepped time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LONG_S = 20 * DECLARED_S
 
 
 class Scene:
-    """A context whose connections others make and lose.
+    """A context whose connections others open and lose.
 
     Args:
         loop: Lets time pass.
@@ -48,7 +48,7 @@ class Scene:
         self.mend.start(session)
 
     def change(self, *zids: str, is_made: bool) -> None:
-        """Make connections, or lose them."""
+        """Open or lose connections."""
         kind = zenoh.SampleKind.PUT if is_made else zenoh.SampleKind.DELETE
         for zid in zids:
             transport = SimpleNamespace(zid=zid, whatami=zenoh.WhatAmI.PEER)
@@ -56,13 +56,13 @@ class Scene:
             self.state.connections.take(event)
 
     def return_silently(self, *zids: str) -> None:
-        """Lose participants, and connect them anew without their tokens."""
+        """Lose participants, and reconnect them without their tokens."""
         self.state.acknowledgements.participants.update(zids)
         self.change(*zids, is_made=False)
         self.change(*zids, is_made=True)
 
     def declare(self, zid: str) -> None:
-        """Let the token of a participant come."""
+        """Deliver the token of a participant."""
         self.state.acknowledgements.present.add(zid)
 
     async def step(self, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""The stop of a lease over Zenoh, for readers that do not acknowledge: put again for a while."""
+"""The stop of a lease over Zenoh is repeated for readers that do not acknowledge."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STOP = Int32(data=-1)
 
 
 class Wheels:
-    """A subscription that does not acknowledge, as those of ROS 2, and a publisher of commands."""
+    """A subscription that does not acknowledge, as in ROS 2, and a publisher of commands."""
 
     def __init__(self, left: Node, right: Node) -> None:
         self.left = left
@@ -66,7 +66,7 @@ async def wheels() -> AsyncIterator[tuple[Wheels, AsyncExitStack]]:
 
 
 async def test_it_is_put_again_with_the_same_number_for_a_while() -> None:
-    """Zenoh may drop what does not fit into its queue, and tells nobody."""
+    """Zenoh may silently drop what does not fit into its queue."""
     async with wheels() as (both, _):
         await both.drive()
         await both.wait(0.6)
@@ -77,7 +77,7 @@ async def test_it_is_put_again_with_the_same_number_for_a_while() -> None:
 
 
 async def test_it_is_not_put_again_behind_another_message() -> None:
-    """The next holder drives by then."""
+    """The next holder is driving by then."""
     async with wheels() as (both, _):
         await both.drive()
         both.commands.publish(Int32(data=2))

@@ -1,4 +1,4 @@
-"""Zenoh's sockets while a peer has stopped reading."""
+"""Zenoh's sockets while a peer does not read."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_leas
 
 
 async def test_a_closed_context_looks_for_sockets_no_more() -> None:
-    """A timer that is left would hold the closed session."""
+    """A remaining timer would keep the closed session alive."""
     setters = living(lingering.SocketOptions)
     others = set(threading.enumerate())
 

@@ -19,7 +19,7 @@ def lost(numbers: list[int]) -> int:
 
 
 def heard(others: int, taken: list[int]) -> list[int]:
-    """Return what becomes of the numbers that a publisher took."""
+    """Return how the numbers of a publisher are interpreted."""
     numbers = TargetNumbers(lambda: others)
     return [numbers.number(GID, each, by_target=True) for each in taken]
 

@@ -1,4 +1,4 @@
-"""Topics between contexts, byte for byte as rmw_zenoh_cpp has them."""
+"""Topics between contexts, byte for byte as in rmw_zenoh_cpp."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ async def first_numbers(subscription: Any, count: int) -> list[int]:
 
 
 async def test_messages_go_both_ways_in_order() -> None:
-    """The plainest promise, between participants."""
+    """The basic guarantee between participants."""
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,
@@ -229,7 +229,7 @@ async def test_what_was_published_before_the_context_opened_is_kept() -> None:
 
 
 async def test_a_late_volatile_reader_gets_nothing_old() -> None:
-    """It asked for new messages only."""
+    """It requested only new messages."""
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,
@@ -307,7 +307,7 @@ async def test_subscriptions_of_a_context_share_a_large_payload() -> None:
 
 
 async def test_keep_all_loses_nothing() -> None:
-    """However fast the publisher: it is told to wait, and `drain` waits."""
+    """However fast the publisher is: it is told to wait, and `drain` waits."""
     count = 12_000
     async with (
         two_contexts() as (first, second),
@@ -557,7 +557,7 @@ async def test_a_closed_context_leaves_no_thread_and_opens_again() -> None:
 
 
 async def test_raw_subscriptions_get_the_bytes() -> None:
-    """For tools that record or pass on."""
+    """For tools that record or forward messages."""
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,
