@@ -39,6 +39,13 @@ __all__ = [
 DEPTH_HEAD: Final = struct.Struct("<iff")
 """The header that compressedDepth puts before its picture: a format and the depth quantization."""
 
+RVL_HEAD: Final = struct.Struct("<II")
+"""The width and height before an RVL picture."""
+MOST_PIXELS: Final = 2**25
+"""How many pixels an RVL picture may have, as a few bytes can stand for any number of zeros."""
+MOST_NIBBLES: Final = 10
+"""The place of the last nibble of a number of 32 bits."""
+
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
 """The channels of colour encodings, one letter each."""
 
@@ -367,8 +374,8 @@ def decompress(image: CompressedImage) -> Image:
 
     Raises:
         TypeError: `image` is not a CompressedImage.
-        MessageError: Pillow cannot read its data (a ValueError).
-        ModuleNotFoundError: Pillow is not installed.
+        MessageError: Its data cannot be read (a ValueError).
+        ModuleNotFoundError: Pillow is not installed, which RVL does not need.
     """
     if not isinstance(image, CompressedImage):
         raise TypeError(
@@ -376,6 +383,10 @@ def decompress(image: CompressedImage) -> Image:
         )
     is_depth = "compressedDepth" in image.format
     data = memoryview(image.data)
+    if is_depth and image.format.endswith("compressedDepth rvl"):
+        depths = depths_of_rvl(data[DEPTH_HEAD.size :], image.format)
+        picture = from_numpy(depths, "mono16", image.header)
+        return depth_of(picture, DEPTH_HEAD.unpack_from(data), image.format)
     try:
         picture = pillow().open(io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data))
         picture.load()
@@ -386,6 +397,54 @@ def decompress(image: CompressedImage) -> Image:
         ) from error
     message = from_pil(picture, image.header)
     return depth_of(message, DEPTH_HEAD.unpack_from(data), image.format) if is_depth else message
+
+
+def depths_of_rvl(data: memoryview, format: str) -> npt.NDArray[np.uint16]:  # noqa: A002  # the field's name
+    """Return the picture of compressedDepth's lossless RVL.
+
+    Its numbers are nibbles of three bits each, the lowest first, of which all but the last have the
+    highest bit. They are: how many pixels are 0, how many follow that are not, and for each of
+    these the difference to the one before, with its sign as the lowest bit; and so on.
+
+    Raises:
+        MessageError: The data end too early, or say that there are more pixels than are read.
+    """
+    wrong = MessageError(
+        "sensor_msgs/msg/CompressedImage.data",
+        f"no RVL picture of at most {MOST_PIXELS} pixels; its format is given as {format!r}",
+    )
+    if len(data) < RVL_HEAD.size:
+        raise wrong
+    width, height = RVL_HEAD.unpack_from(data)
+    count = width * height
+    if not 0 < count <= MOST_PIXELS:
+        raise wrong
+    words = np.frombuffer(data[RVL_HEAD.size : len(data) - len(data) % 4], "<u4").astype(">u4")
+    packed = words.view(np.uint8)
+    nibbles = np.column_stack((packed >> 4, packed & 15)).reshape(-1)
+    starts = np.append(0, np.flatnonzero(nibbles < 8) + 1)
+    nibbles = nibbles[: starts[-1]]  # the last number may be cut off
+    starts = starts[:-1]
+    place = np.arange(len(nibbles)) - np.repeat(starts, np.diff(np.append(starts, len(nibbles))))
+    if len(starts) == 0 or place.max() > MOST_NIBBLES:
+        raise wrong
+    numbers = np.add.reduceat((nibbles & 7).astype(np.int64) << 3 * place, starts)
+    lengths: list[int] = []
+    is_length = np.zeros(len(numbers), bool)
+    at, left = 0, count
+    while left > 0 and at + 1 < len(numbers):
+        zeros, others = int(numbers[at]), int(numbers[at + 1])
+        lengths += zeros, others
+        is_length[at : at + 2] = True
+        at += 2 + others
+        left -= zeros + others
+    if left != 0 or at > len(numbers):
+        raise wrong
+    deltas = numbers[:at][~is_length[:at]]
+    depths = np.zeros(count, np.uint16)
+    has_depth = np.repeat(np.arange(len(lengths)) % 2 == 1, lengths)
+    depths[has_depth] = np.cumsum((deltas >> 1) ^ -(deltas & 1)).astype(np.uint16)
+    return depths.reshape(height, width)
 
 
 def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Image:  # noqa: A002  # the field's name

@@ -140,7 +140,7 @@ class Republisher(Node):
         """Declare how depths are compressed."""
         format_ = self.declare_parameter(f"{DEPTH}format", "png").value
         if format_ != "png":
-            raise CommandError(f"{DEPTH}format is {format_!r}; png fits, and there is no RVL here")
+            raise CommandError(f"{DEPTH}format is {format_!r}; png fits; RVL is read only")
         for name, usual, most in (("depth_max", 10.0, 100.0), ("depth_quantization", 100.0, 150.0)):
             metres = FloatingPointRange(from_value=1.0, to_value=most)
             described = ParameterDescriptor(floating_point_range=[metres])
