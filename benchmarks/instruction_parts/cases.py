@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import zenoh
 
-from aionode import Context, Node
+from aionode import ActionClient, ActionServer, Context, Node
 from aionode.engine.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
 from aionode.engine.transport.link import LinkTransport
 from aionode.engine.transport.link import _protocol as protocol
@@ -30,6 +30,7 @@ from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
 from aionode.engine.wire import _attachment as attachment
 from aionode.engine.wire import cdr
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import qos_profile_sensor_data
@@ -344,6 +345,34 @@ async def service_call(count: Count) -> AsyncIterator[Callable[[], Any]]:
 
 
 @asynccontextmanager
+async def action_goal(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Have a goal executed over a link, with five feedback messages: client and server."""
+    async with linked_nodes() as (one, two):
+        feedback = Fibonacci.Feedback(sequence=[0, 1, 1, 2])
+        result = Fibonacci.Result(sequence=[0, 1, 1, 2])
+
+        async def execute(goal: Any) -> Fibonacci.Result:
+            for _ in range(5):
+                goal.publish_feedback(feedback)
+            goal.succeed()
+            return result
+
+        ActionServer(two, Fibonacci, "fibonacci", execute, max_goals=SMALL)
+        client = ActionClient(one, Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        heard = Count()
+
+        async def send() -> None:
+            goal = await client.send_goal(Fibonacci.Goal(order=5), heard.take)
+            await goal.result()
+            count.take()
+
+        while not one.context.transports[1].manager.links:  # type: ignore[attr-defined]  # noqa: ASYNC110  # nothing tells
+            await asyncio.sleep(0.02)
+        yield send
+
+
+@asynccontextmanager
 async def zenoh_node() -> AsyncIterator[tuple[Node, ZenohEndpoints]]:
     """Return a node on Zenoh's endpoints without a session."""
     transport = ZenohEndpoints("ab")
@@ -412,6 +441,7 @@ CASES: Final[dict[str, Case]] = {
     "receive to callback, Zenoh": zenoh_receive,
     "timer tick": timer_tick,
     "service call and response, link": service_call,
+    "goal with five feedback messages, link": action_goal,
     "publish to callback, in process, causes kept": partial(in_process, causes=True),
     "publish, link, causes kept": partial(link_publish, causes=True),
     "receive to callback, link, causes kept": partial(link_receive, causes=True),

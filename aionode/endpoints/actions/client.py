@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from aionode._process.concurrency import checkpoint
@@ -61,7 +60,7 @@ end, for 3 to 7 it arrived after the result, by less than a millisecond.
 """
 
 TURNS_FOR_FEEDBACK = 10
-"""Iterations of the loop until feedback that has arrived has left its queue."""
+"""Iterations of the loop in which feedback that has arrived may leave its queue."""
 
 FEEDBACK_QOS = QoSProfile(depth=1000)
 """All goals share one feedback queue, with room for the feedback of ten goals."""
@@ -540,10 +539,16 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _hear_out(self) -> None:
         """Wait for feedback that the result has overtaken."""
         if self._is_remote():
-            with suppress(TimeoutError):
-                async with asyncio.timeout(LAST_FEEDBACK_S):
-                    await asyncio.Event().wait()
+            loop = asyncio.get_running_loop()
+            over = loop.create_future()
+            alarm = loop.call_later(LAST_FEEDBACK_S, over.set_result, None)
+            try:
+                await over
+            finally:
+                alarm.cancel()
         for _ in range(TURNS_FOR_FEEDBACK):
+            if not self._feedback._reader.waiting:
+                break
             await checkpoint()
 
     def _is_remote(self) -> bool:

@@ -324,7 +324,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     # New goals
 
-    async def _on_goal(self, request: Any) -> Any:
+    def _on_goal(self, request: Any) -> Any:
+        """Return the response, or its coroutine if `goal_callback` decides."""
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
         if self._is_refused(goal_id):
@@ -334,6 +335,13 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._rejections.put(goal_id, why)
             return response
         self._client_watch.add(goal_id, self._send_goal._client_gid)
+        if self._goal_callback is not None:
+            return self._decide(goal_id, request, response)
+        self._take_goal(goal_id, request, response)
+        return response
+
+    async def _decide(self, goal_id: bytes, request: Any, response: Any) -> Any:
+        """Ask `goal_callback`, and return the response."""
         try:
             # It may have to be refused now, because of a request that arrived during the callback.
             if not await self._welcomes(request.goal) or self._is_refused(goal_id):
@@ -343,18 +351,21 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._rejections.put(goal_id, rejected.reason)
             return response
         else:
-            response.accepted = True
-            response.stamp = self._clock.now().to_msg()
-            goal = self._accept(goal_id, request, response.stamp)
+            self._take_goal(goal_id, request, response)
+            return response
         finally:
             if not response.accepted:
                 self._client_watch.remove(goal_id)
-        # In either case the goal is queued first, so that the client is told before it starts.
+
+    def _take_goal(self, goal_id: bytes, request: Any, response: Any) -> None:
+        """Accept a goal, and queue it: the client is told before it starts."""
+        response.accepted = True
+        response.stamp = self._clock.now().to_msg()
+        goal = self._accept(goal_id, request, response.stamp)
         if self._handle_accepted_callback is None:
             goal.execute()
         else:
             self._accepted.put(goal)
-        return response
 
     def _is_refused(self, goal_id: bytes) -> bool:
         """Return whether the goal is already known, or was cancelled before it arrived."""
@@ -441,10 +452,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self.stats.queue_wait.record(perf_ns() - entered_ns)
         goal._begin()
         try:
-            async with asyncio.TaskGroup() as tasks:  # cancelling a goal cancels only its own task
-                create_own_task(
-                    tasks, self._call_execute(goal, runner), f"{self._subject} goal {goal.text}"
-                )
+            if self._concurrent is not False:  # each goal has a task already
+                await self._call_execute(goal, runner)
+            else:  # cancelling a goal cancels only its own task
+                async with asyncio.TaskGroup() as tasks:
+                    create_own_task(tasks, self._call_execute(goal, runner))
         finally:
             if goal.is_active:  # the node stopped before the callback started
                 goal._stopped()
@@ -454,8 +466,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> None:
         if self._causes is not None:
             self._begin_run(self._causes, goal, runner)
+        task = asyncio.current_task()
+        assert task is not None  # noqa: S101  # a coroutine runs in one
+        task.set_name(f"{self._subject} goal {goal.text}")
         if not self._offload:  # a thread cannot be cancelled; it has to check itself
-            goal._run_in(asyncio.current_task())
+            goal._run_in(task)
         try:
             goal._returned(await runner.call(goal))
         except asyncio.CancelledError:

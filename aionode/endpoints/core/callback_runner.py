@@ -14,6 +14,7 @@ import sys
 import weakref
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
+from types import FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
@@ -609,6 +610,16 @@ def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: st
     """
     if not callable(callback):
         raise TypeError(f"{subject}: {brief(callback)} is not callable; pass a function {wanted}")
+    function = callback.__func__ if isinstance(callback, MethodType) else callback
+    if isinstance(function, FunctionType) and not function.__dict__:
+        # Most callbacks, in a twentieth of the time of a signature: each goal has one.
+        code = function.__code__
+        if not (code.co_kwonlyargcount or code.co_flags & inspect.CO_VARARGS):
+            most = code.co_argcount - (function is not callback)
+            least = most - len(function.__defaults__ or ())
+            for count in counts:
+                if least <= count <= most:
+                    return count
     try:
         signature = inspect.signature(callback)
     except ValueError:  # a builtin without a signature

@@ -70,6 +70,22 @@ class GoalStore(dict[bytes, Any]):
         self.kept_ns = kept_ns
         # When each kept goal expires. All are kept for the same time, so they are in order.
         self._kept: dict[bytes, int] = {}
+        # The sizes of the goals' messages, and the sums for the active and the kept ones.
+        self._sizes: dict[bytes, int] = {}
+        self._active_bytes = self._kept_bytes = 0
+
+    def __setitem__(self, goal_id: bytes, handle: Any) -> None:
+        """Add a goal, which is active until `keep`."""
+        super().__setitem__(goal_id, handle)
+        size = self._sizes[goal_id] = self._size(handle.request) if self._limit_bytes else 0
+        self._active_bytes += size
+
+    def clear(self) -> None:
+        """Forget all goals."""
+        super().clear()
+        self._kept.clear()
+        self._sizes.clear()
+        self._active_bytes = self._kept_bytes = 0
 
     @property
     def active(self) -> int:
@@ -84,21 +100,20 @@ class GoalStore(dict[bytes, Any]):
         """
         if self.active >= self._limit:
             return f"{self.active} are active: max_goals={self._limit}"
-        if goal is None:
+        if goal is None or not (self._limit_bytes and self.active):
             return ""
-        active = [handle.request for key, handle in self.items() if key not in self._kept]
-        if not active or self._fit([goal, *active]):
+        if self._active_bytes + self._size(goal) <= self._limit_bytes:
             return ""
         return (
             f"more than {self._limit_bytes / 2**20:.3g} MiB of goals would be active: "
             "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
         )
 
-    def _fit(self, goals: list[Any]) -> bool:
-        """Return whether messages of goals are within the size limit."""
-        kind: Any = self._goal_class or type(goals[0])
-        size_of = memory_size(kind) if self._limit_bytes else None
-        return size_of is None or sum(map(size_of, goals)) <= self._limit_bytes
+    def _size(self, goal: Any) -> int:
+        """Return the size of a goal's message; 0 if all have the same."""
+        kind: Any = self._goal_class or type(goal)
+        size_of = memory_size(kind)
+        return 0 if size_of is None else size_of(goal)
 
     @property
     def due_ns(self) -> int | None:
@@ -111,8 +126,10 @@ class GoalStore(dict[bytes, Any]):
         if len(self._kept) >= self._limit:
             forgotten.append(self._forget(next(iter(self._kept))))
         self._kept[goal_id] = self._now_ns() + self.kept_ns
+        self._active_bytes -= self._sizes[goal_id]
+        self._kept_bytes += self._sizes[goal_id]
         if self._limit_bytes:
-            while len(self._kept) > 1 and not self._fit([self[key].request for key in self._kept]):
+            while len(self._kept) > 1 and self._kept_bytes > self._limit_bytes:
                 forgotten.append(self._forget(next(iter(self._kept))))
         return forgotten
 
@@ -126,6 +143,7 @@ class GoalStore(dict[bytes, Any]):
 
     def _forget(self, goal_id: bytes) -> Any:
         del self._kept[goal_id]
+        self._kept_bytes -= self._sizes.pop(goal_id)
         return self.pop(goal_id)
 
 
@@ -161,7 +179,6 @@ class AlarmedGoalStore(GoalStore):
         """Forget all goals, and return them."""
         goals = list(self.values())
         self.clear()
-        self._kept.clear()
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None

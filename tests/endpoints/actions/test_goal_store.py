@@ -161,6 +161,20 @@ def test_all_goals_that_make_room_for_a_large_one_are_told_of() -> None:
     assert goals.keep(b"large") == small
 
 
+def test_forgotten_goals_leave_room_for_as_many_bytes() -> None:
+    """The sizes are added up as goals come and go, not counted anew for each goal."""
+    now_ns = 0
+    goals = GoalStore(lambda: now_ns, limit=10, kept_ns=5, limit_bytes=10_000)
+    for number in range(20):
+        goal_id = bytes([number])
+        assert not goals.refusal(Large(6_000).request)
+        goals[goal_id] = Large(6_000)
+        assert goals.refusal(Large(6_000).request)
+        assert goals.keep(goal_id) == []
+        now_ns += 5
+        assert len(goals.expire()) == 1
+
+
 async def test_a_full_server_tells_its_client_why_it_rejects(node: Node) -> None:
     """The caller waits and sends the goal again, or the robot's owner raises the limit."""
     serve(node, Worker(), 1)

@@ -596,3 +596,35 @@ def test_callbacks_take_their_arguments_by_position() -> None:
 
     chosen: Callable[..., int] = callback_runner.accepts
     assert chosen(callback, 1, 2, subject="x", wanted="(message)") == 1
+
+
+class _Forms:
+    """Functions of every form, as methods."""
+
+    def plain(self, one: object) -> None: ...
+    def default(self, one: object, two: object = None) -> None: ...
+    def positional(self, one: object, /) -> None: ...
+    def any_number(self, *more: object) -> None: ...
+    def keyword(self, one: object, *, two: object = None) -> None: ...
+    def required(self, one: object, *, two: object) -> None: ...
+    def nothing(self) -> None: ...
+
+
+@pytest.mark.parametrize("form", [name for name in vars(_Forms) if not name.startswith("_")])
+@pytest.mark.parametrize("bound", [True, False])
+def test_what_a_function_accepts_is_what_its_signature_says(form: str, bound: bool) -> None:
+    """Most functions are looked at without making a signature, which takes 20 times as long."""
+    callback = getattr(_Forms() if bound else _Forms, form)
+
+    def call(*_: object, **__: object) -> None: ...
+
+    # A wrapper with the signature of the function, which is looked at by its signature only.
+    wrapper = functools.update_wrapper(call, callback)
+
+    def found(callback: Callable[..., object]) -> int | None:
+        try:
+            return callback_runner.accepts(callback, 2, 1, subject="it", wanted="(one)")
+        except TypeError:
+            return None
+
+    assert found(callback) == found(wrapper)

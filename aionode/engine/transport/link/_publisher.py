@@ -164,6 +164,8 @@ class LinkWriter(Writer):
     async def drain(self) -> None:
         """Wait until everything was passed to the operating system, or to Zenoh."""
         send_queues = self.routes.send_queues
+        for connection in list(send_queues):
+            connection.send_rest()
         while slow := [each for each in send_queues.values() if not each.is_done()]:
             await slow[0].connection.progress()
         await self._zenoh.drain()
