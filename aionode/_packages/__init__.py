@@ -18,7 +18,7 @@ from aionode._packages._here import (
 from aionode._packages._packages import Packages
 from aionode._packages._parameter_modules import ParameterModule, parameter_modules
 from aionode._packages._standard import program_module, remark_on, standard_packages
-from aionode._packages._starters import starter_file
+from aionode._packages._starters import is_starter_file, on_path, starter_file
 from aionode._packages._workspace import package_of, workspace_of
 
 __all__ = [
@@ -28,6 +28,8 @@ __all__ = [
     "around",
     "here",
     "is_python",
+    "is_starter_file",
+    "on_path",
     "package_of",
     "package_of_stand_in",
     "parameter_modules",

@@ -5,11 +5,17 @@ from __future__ import annotations
 import hashlib
 import os
 import shlex
+import shutil
+import sysconfig
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
-__all__ = ["starter_file"]
+__all__ = ["is_starter_file", "on_path", "starter_file"]
+
+FOLDER: Final = "starters"
 
 
 def starter_file(name: str, command: Sequence[str]) -> Path:
@@ -21,9 +27,9 @@ def starter_file(name: str, command: Sequence[str]) -> Path:
     folder = hashlib.sha256(text.encode()).hexdigest()[:16]
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     try:
-        return written(Path(home, "aionode", "starters", folder, name), text)
+        return written(Path(home, "aionode", FOLDER, folder, name), text)
     except OSError:  # no home, or it is read-only
-        return written(Path(tempfile.mkdtemp(prefix="aionode_starter_"), name), text)
+        return written(Path(tempfile.mkdtemp(prefix="aionode_"), FOLDER, folder, name), text)
 
 
 def written(file: Path, text: str) -> Path:
@@ -35,3 +41,34 @@ def written(file: Path, text: str) -> Path:
         new.chmod(0o755)
         new.replace(file)
     return file
+
+
+def is_starter_file(file: str) -> bool:
+    """Return whether a file is one of these."""
+    return Path(file).parent.parent.name == FOLDER
+
+
+@contextmanager
+def on_path(name: str, starter: Callable[[Path], list[str]]) -> Iterator[None]:
+    """Put a program that is installed for this Python on the PATH of this process, for a while.
+
+    Without an activated environment it is not there. One that is on the PATH already, and is not
+    that of this Python, stays the one that is found.
+
+    Args:
+        name: The program.
+        starter: Returns the command that starts it.
+    """
+    program = shutil.which(name, path=sysconfig.get_path("scripts"))
+    if program is None or shutil.which(name) not in {None, program}:
+        yield
+        return
+    before = os.environ.get("PATH")
+    folder = starter_file(name, starter(Path(program))).parent
+    os.environ["PATH"] = os.pathsep.join(filter(None, [str(folder), before]))
+    try:
+        yield
+    finally:
+        del os.environ["PATH"]
+        if before is not None:
+            os.environ["PATH"] = before

@@ -135,3 +135,32 @@ def test_what_it_cannot_do_is_one_line(
     assert main(["launch", file, "speed:=1", *words]) == 1
 
     assert text in capsys.readouterr().err
+
+
+def test_a_launch_file_in_python_runs_xacro_by_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without an activated environment, and with the packages of the workspace."""
+    monkeypatch.setenv("PATH", "/usr/bin:/bin")
+    package = tmp_path / "arm"
+    package.mkdir()
+    (package / "package.xml").write_text(
+        "<package format='3'><name>arm</name><version>1.0.0</version></package>"
+    )
+    (package / "arm.xacro").write_text(
+        "<robot xmlns:xacro='http://ros.org/wiki/xacro' name='$(find arm)'/>"
+    )
+    file = package / "arm.launch.py"
+    file.write_text(
+        "import subprocess\nfrom launch import LaunchDescription\n"
+        "from launch.actions import LogInfo\n"
+        "def generate_launch_description():\n"
+        f"    command = ['xacro', {str(package / 'arm.xacro')!r}]\n"
+        "    text = subprocess.check_output(command, text=True)\n"
+        "    return LaunchDescription([LogInfo(msg=text.splitlines()[-1])])\n"
+    )
+
+    assert main(["launch", str(file), "--print", "--workspace", str(tmp_path)]) == 0
+
+    assert f'name="{package}"' in capsys.readouterr().out
+    assert os.environ["PATH"] == "/usr/bin:/bin"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from aionode._packages import Packages, around, on_path
 from aionode.cli._support.exit import become
 from aionode.cli._support.options import interfaces_option
 from aionode.errors import CommandError, escaped
@@ -91,18 +92,20 @@ def launch_command(
     path, values = file_and_values(file, arguments, workspace)
     if real:
         run_real(path, values)
-    plan = Plan(path, values, workspace=workspace, skip_missing=skip_missing)
-    if show_args:
-        for line in map(argument_text, plan.declared):
-            click.echo(escaped(line))
-    elif prints:
-        print_plan(plan, as_json=as_json)
-    else:
-        status = start(
-            plan, watch=watch, once_ready=once_ready, as_json=as_json, log_folder=log_folder
-        )
-        if status and not noninteractive:
-            raise click.exceptions.Exit(status)
+    packages = around(Path(path)) if workspace is None else Packages(Path(workspace))
+    with on_path("xacro", packages.starter):  # Python in launch files runs it by this name
+        plan = Plan(path, values, workspace=workspace, skip_missing=skip_missing)
+        if show_args:
+            for line in map(argument_text, plan.declared):
+                click.echo(escaped(line))
+        elif prints:
+            print_plan(plan, as_json=as_json)
+        else:
+            status = start(
+                plan, watch=watch, once_ready=once_ready, as_json=as_json, log_folder=log_folder
+            )
+            if status and not noninteractive:
+                raise click.exceptions.Exit(status)
 
 
 def file_and_values(

@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Self
 
+from aionode._packages import is_starter_file
 from aionode._process.bounded_files import LARGEST_FILE, read_file
 from launch.launch_context import LaunchContext
 from launch.substitution import (
@@ -274,8 +275,10 @@ def program_of(name: str, context: LaunchContext) -> str | None:
 
     The PATH lacks the latter if this Python's environment is not activated.
     """
-    path = context.environment.get("PATH")
-    return shutil.which(name, path=path) or shutil.which(name, path=sysconfig.get_path("scripts"))
+    found = shutil.which(name, path=context.environment.get("PATH"))
+    if found is not None and not is_starter_file(found):
+        return found
+    return shutil.which(name, path=sysconfig.get_path("scripts")) or found
 
 
 def missing_program(name: str) -> str:
