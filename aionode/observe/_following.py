@@ -80,7 +80,8 @@ class Following:
             told = await transport.observe("causes", encoded(CauseQuestion()), ANSWER_S)
             for participant, data in told.items():
                 if data is None:
-                    self.silent[participant] = self.nodes_of(participant)
+                    if nodes := self.nodes_of(participant):  # others have just ended, or are tools
+                        self.silent[participant] = nodes
                     continue
                 report = decoded(data)
                 if not data:

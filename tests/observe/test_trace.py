@@ -17,6 +17,7 @@ from aionode.cli._nouns.trace import record
 from aionode.cli._support.output import Output
 from aionode.engine.cause_reports import CauseQuestion, answer, encoded
 from aionode.engine.causes import CauseLog
+from aionode.graph import NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.observe import _trace, record_trace
 from aionode.testing import local_context
@@ -129,6 +130,18 @@ async def test_a_context_that_counts_backwards_hides_no_loss() -> None:
         Node("robot", context=context) as node,
     ):
         assert (await record_trace(node, 0.01)).lost == 0
+
+
+async def test_a_context_without_nodes_is_not_named_silent() -> None:
+    """It has just ended, or is a tool."""
+    async with (
+        Context(transport=Answering({"a1": None, "b2": None}), causes=True) as context,
+        Node("robot", context=context) as node,
+    ):
+        node.graph.add_node(NodeInfo("a1", 1, "frozen", "/"))
+        trace = await record_trace(node, 0.01)
+
+    assert trace.silent == {"a1": ["/frozen"]}
 
 
 async def test_the_command_writes_a_file_and_names_who_takes_no_part(
