@@ -31,6 +31,8 @@ from aionode.engine.transport.link._shared_memory import SHARED_FROM, BufferMapp
 from aionode.errors import FrameError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from aionode.engine.transport.link._protocol import Control, Frame
     from aionode.engine.transport.link._shared_memory import BufferPool, SharedBuffer
     from aionode.engine.wire.cdr import Data
@@ -255,16 +257,17 @@ class Connection:
         self._send_now_or_later(control.pack(), None)
 
     def send_data(
-        self, kind: int, sequence: int, source_ns: int, gid: bytes, payload: bytes
+        self, kind: int, sequence: int, source_ns: int, gid: bytes, parts: Sequence[Data]
     ) -> None:
         """Send a frame that is never dropped; a large payload goes through shared memory."""
-        buffer = self.pool.filled(payload) if len(payload) >= SHARED_FROM else None
+        size = sum(map(len, parts))
+        buffer = self.pool.filled(parts, size) if size >= SHARED_FROM else None
         if buffer is None:
-            data = protocol.pack(kind, sequence, source_ns, gid, payload)
+            data = protocol.pack(kind, sequence, source_ns, gid, b"".join(parts))
             if self._urgent or not self.write(data):
                 self._send_now_or_later(data, None)
         else:
-            reference = BufferRef(buffer.number, buffer.start, len(payload)).pack()
+            reference = BufferRef(buffer.number, buffer.start, size).pack()
             data = protocol.pack(kind, sequence, source_ns, gid, reference, in_shm=True)
             self._send_now_or_later(data, buffer)
 

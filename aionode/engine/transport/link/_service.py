@@ -13,10 +13,13 @@ from aionode.engine.transport.base import Registration, Request, Requester, Samp
 from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.link._protocol import GID_SIZE, Cancel, End, Fail, Kind
 from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._layout import has_views
 from aionode.errors import DecodeError, FrameError, ServiceError
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from aionode.engine.transport.base import Call, ReplyTo, Serve
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._registry import LinkRegistry
@@ -121,11 +124,11 @@ class LinkRequest(Request):
 
     def reply(self, response: Any) -> None:
         """Send the response, with the client's own number."""
-        payload = cdr.encode(response)
+        parts = parts_of(response)
         if self._finish():
             sample_info = self.sample_info
             now_ns = self._server.now_ns()
-            self.connection.send_data(REPLY, sample_info.sequence, now_ns, sample_info.gid, payload)
+            self.connection.send_data(REPLY, sample_info.sequence, now_ns, sample_info.gid, parts)
 
     def fail(self, error_type: str, error_text: str) -> None:
         """Send an error."""
@@ -206,7 +209,7 @@ class LinkRequester(Requester):
             self._ask()
         if not self._reaches_all or self.over_zenoh:
             return ForwardedCall(self, request, sample_info, reply_to, self._zenoh)
-        payload = cdr.encode(request)
+        parts = parts_of(request)
         call = LinkCall(self, sample_info.sequence, reply_to)
         for server, route in self._connections:
             call.routes.append(route)
@@ -215,7 +218,7 @@ class LinkRequester(Requester):
                 sample_info.sequence,
                 sample_info.source_ns,
                 sample_info.gid,
-                server + payload,
+                [server, *parts],
             )
         return call
 
@@ -321,6 +324,12 @@ class LinkCall:
         if self._finish():
             for route in self.routes:
                 route.send(Cancel(self._requester.endpoint.gid, self._sequence))
+
+
+def parts_of(message: Any) -> Sequence[Data]:
+    """Encode a request or response, without copying its arrays yet."""
+    cls = type(message)
+    return cdr.parts_encoder(cls)(message) if has_views(cls) else (cdr.encode(message),)
 
 
 def server_of(payload: Data) -> tuple[bytes, Data]:

@@ -277,8 +277,8 @@ async def test_what_a_link_brings_and_nobody_can_read_has_a_number_and_a_line(
         link, bad = link_of(nodes.a), b"\0\1\0\0x"
         server = gid_of(nodes.b, "/add", EndpointKind.SERVER)
         asker = gid_of(nodes.a, "/add", EndpointKind.CLIENT)
-        link.send_data(int(Kind.DATA), 10_000, 0, gid_of(nodes.a, "/n"), bad)
-        link.send_data(int(Kind.REQUEST), 1, 0, asker, server + bad)
+        link.send_data(int(Kind.DATA), 10_000, 0, gid_of(nodes.a, "/n"), [bad])
+        link.send_data(int(Kind.REQUEST), 1, 0, asker, [server, bad])
         dropped = manager_of(nodes.b).drops.of(Drop.MALFORMED)
         await until(lambda: len(dropped) == 2)
 
