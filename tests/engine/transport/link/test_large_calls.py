@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["folder"]  # a fixture
 
 SIZE = 6_000_000
-CELLS = np.arange(SIZE, dtype=np.int64).astype(np.int8)
+CELLS: Any = np.arange(SIZE, dtype=np.int64).astype(np.int8)
 MAP = OccupancyGrid(data=CELLS)
 
 
@@ -27,7 +27,7 @@ def is_whole(data: Any) -> bool:
     return memoryview(data).cast("B") == memoryview(CELLS).cast("B")
 
 
-CALLS: list[tuple[type[Any], Callable[[Any], Any], Any]] = [
+CALLS: list[tuple[Any, Callable[[Any], Any], Any]] = [
     (GetMap, lambda _: GetMap.Response(map=MAP), GetMap.Request()),
     (
         SetMap,
@@ -39,7 +39,7 @@ CALLS: list[tuple[type[Any], Callable[[Any], Any], Any]] = [
 
 @pytest.mark.parametrize(("service", "answer", "request_"), CALLS, ids=["response", "request"])
 async def test_a_large_map_is_not_copied_into_memory_of_a_process(
-    service: type[Any], answer: Callable[[Any], Any], request_: Any
+    service: Any, answer: Callable[[Any], Any], request_: Any
 ) -> None:
     """Each copy would block both event loops for milliseconds; it arrives as it was sent."""
     async with two_nodes() as nodes:
