@@ -22,6 +22,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from aionode._process.imports import uncollected
+
 if TYPE_CHECKING:
     from aionode.action import (
         ActionClient,
@@ -183,9 +185,12 @@ _EXPORTS = {
 def __getattr__(name: str) -> Any:
     """Return a public name or a module of the package, and cache it."""
     try:
-        value = (
-            getattr(import_module(_EXPORTS[name]), name) if name in _EXPORTS else submodule(name)
-        )
+        with uncollected():
+            value = (
+                getattr(import_module(_EXPORTS[name]), name)
+                if name in _EXPORTS
+                else submodule(name)
+            )
     except ModuleNotFoundError as error:
         if error.name != f"{__name__}.{name}":
             raise

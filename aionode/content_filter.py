@@ -20,8 +20,9 @@ from __future__ import annotations
 
 import operator
 import re
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from msgspec import Struct, field
 
 from aionode.errors import ContentFilterError
 from aionode.message import fields, type_name
@@ -43,8 +44,7 @@ MAX_DEPTH: Final = 50
 """The deepest nesting of parentheses and NOT."""
 
 
-@dataclass
-class ContentFilterOptions:
+class ContentFilterOptions(Struct):
     """Selects the messages that a subscription receives; the attributes have rclpy's names.
 
     Attributes:

@@ -13,10 +13,11 @@ The error messages are those of rcl and rmw, which users may know or can look up
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
+
+from msgspec import Struct
 
 from aionode.errors import (
     InvalidNamespaceException,
@@ -390,8 +391,7 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class RemapRule:
+class RemapRule(Struct, frozen=True):
     r"""One rule that renames a node, topic or service.
 
     Its text is ``match:=replacement``:

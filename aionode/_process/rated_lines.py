@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
 from typing import Final, Generic, TypeVar
+
+from msgspec import Struct
 
 from aionode._process.recent import Recent
 
@@ -18,8 +19,7 @@ WAIT_NS: Final = 10_000_000_000
 MOST_WAIT_NS: Final = 640_000_000_000
 
 
-@dataclass(slots=True)
-class Line:
+class Line(Struct):
     """The log lines about one subject: when it may be logged again, and the number not logged."""
 
     due_ns: int

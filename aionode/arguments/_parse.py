@@ -9,11 +9,11 @@ Each such block follows rcl's grammar; all other arguments belong to the program
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from pathlib import PurePath
+
+from msgspec import Struct, field
 
 from aionode.arguments._parameter_yaml import (
     ParameterRule,
@@ -40,8 +40,7 @@ VALUE = "value"  # the source in errors about values on the command line
 ParameterFileReader = Callable[[str], Iterable[ParameterRule]]
 
 
-@dataclass(frozen=True)
-class Arguments:
+class Arguments(Struct, frozen=True):
     """The parsed arguments.
 
     Attributes:
@@ -101,6 +100,8 @@ class Arguments:
         """
         if not self.unparsed_ros_args:
             return
+        import difflib  # for this error only
+
         word = self.unparsed_ros_args[0]
         alike = difflib.get_close_matches(word.partition("=")[0], [*VALUED, *SWITCHES], n=2)
         hint = f"did you mean {' or '.join(alike)}? " if alike else ""

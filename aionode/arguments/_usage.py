@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.names import RemapKind
@@ -116,6 +115,8 @@ class Usage:
 
 def meant(word: str, known: Iterable[str]) -> str:
     """Return a hint with the most similar known word; empty if none is similar."""
+    import difflib  # for hints only
+
     plain = {name.strip("/"): name for name in known}
     close = difflib.get_close_matches(word.strip("/"), plain, n=1)
     return f"; did you mean {plain[close[0]]!r}?" if close else ""

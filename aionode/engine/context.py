@@ -12,7 +12,6 @@ import contextlib
 import ctypes
 import math
 import os
-import random
 import threading
 import uuid
 import weakref
@@ -23,6 +22,7 @@ from msgspec import structs
 
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode._process.concurrency import spin_before_blocking, to_the_end
+from aionode._process.imports import uncollected
 from aionode._process.sudden_end import SENDS
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime, perf_ns
@@ -45,6 +45,7 @@ from aionode.message import type_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
+    from random import Random
     from types import TracebackType
 
     from aionode.clock import TimeBase
@@ -211,7 +212,11 @@ class Context:
         self._stop_spinning: Callable[[], None] | None = None
         self.ros_distro = choose_distribution(os.environ, ros_distro)
         self.seed = seed
-        self._random = None if seed is None else random.Random(seed)  # noqa: S311  # ids, not secrets
+        self._random: Random | None = None
+        if seed is not None:
+            from random import Random  # few contexts have a seed
+
+            self._random = Random(seed)  # noqa: S311  # ids, not secrets
         self.participant = (
             new_participant() if self._random is None else f"f{self._random.getrandbits(124):031x}"
         )
@@ -271,14 +276,16 @@ class Context:
             return (LocalTransport(),)
         if transport == "zenoh":
             # Imported on demand: it is large, and a local context does not need it.
-            from aionode.engine.transport.zenoh import ZenohTransport
-            from aionode.engine.transport.zenoh.bridge import BridgeTransport
+            with uncollected():
+                from aionode.engine.transport.zenoh import ZenohTransport
+                from aionode.engine.transport.zenoh.bridge import BridgeTransport
 
             zenoh = ZenohTransport(self.participant, self.network, self.time_base)
             bridges = BridgeTransport(zenoh.session_state, self.time_base)
             if not wants_link(link, os.environ):
                 return (LocalTransport(), zenoh, bridges)
-            from aionode.engine.transport.link import LinkTransport
+            with uncollected():
+                from aionode.engine.transport.link import LinkTransport
 
             linked = LinkTransport(
                 self.participant,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Protocol
+
+from msgspec import Struct
 
 from aionode import names
 from aionode.errors import NodeNameNonExistentError
@@ -44,8 +45,7 @@ ENDPOINT_TYPES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class TopicEndpointInfo:
+class TopicEndpointInfo(Struct, frozen=True):
     """A publisher or subscription, with rclpy's attribute names.
 
     Attributes:

@@ -9,8 +9,9 @@ them; ``Annotated[Floats, Array[float64, 9]]``, which generated modules use, is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args, get_origin
+
+from msgspec import Struct
 
 from aionode.errors import brief
 
@@ -57,8 +58,7 @@ DTYPES: dict[str, str] = {
 """Name of the numpy dtype for each type whose arrays are `numpy.ndarray`."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldType:
+class FieldType(Struct, frozen=True):
     """The type of one field.
 
     Attributes:
@@ -104,8 +104,7 @@ class FieldType:
         return f"{name}{bound}{ends[self.container]}"
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(Struct, frozen=True):
     """One field of a message.
 
     Attributes:
@@ -120,8 +119,7 @@ class Field:
     default: object = None
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Struct, frozen=True):
     """One constant of a message: its name, type and value."""
 
     name: str

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
+from msgspec import Struct
 
 from aionode.message._message import Message
 from aionode.message._snapshot import snapshot
@@ -35,8 +35,7 @@ class TooLongError(Exception):
     """A form of a summary has more values than could fit."""
 
 
-@dataclass(slots=True)
-class Detail:
+class Detail(Struct):
     """How much of a message is shown.
 
     Attributes:

@@ -9,14 +9,13 @@ notation (``.nan``, ``.inf``, ``-.inf``).
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import msgspec
+from msgspec import Struct
 
 from aionode.errors import MessageError
 from aionode.message._field_types import FieldType
@@ -42,8 +41,7 @@ def elements_of(values: Any) -> list[Any]:
     return values.tolist() if hasattr(values, "tolist") else list(values)
 
 
-@dataclass(frozen=True, slots=True)
-class Form:
+class Form(Struct, frozen=True):
     """How to write values that have more than one form.
 
     Attributes:
@@ -242,6 +240,8 @@ def message_from(cls: type[Message], data: object, path: str) -> Message:
 
 def no_such_field(cls: type[Message], key: str, names: list[str]) -> str:
     """Return the error text for a field that does not exist."""
+    import difflib  # for this error only
+
     if not names:
         return f"no such field; {type_name(cls)} has no fields"
     close = difflib.get_close_matches(key, names, 1) if len(key) <= LONGEST_FIELD else ()

@@ -15,11 +15,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, get_type_hints
 
 import msgspec
-from msgspec import inspect
+from msgspec import Struct, inspect
 
 from aionode.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,
@@ -59,8 +58,7 @@ class ParameterOwner(Protocol):
         """Report changes to `callback`."""
 
 
-@dataclass(frozen=True)
-class Leaf:
+class Leaf(Struct, frozen=True):
     """One parameter of a class.
 
     Attributes:

@@ -7,11 +7,11 @@ import inspect
 import os
 import sys
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
+from msgspec.structs import replace
 
 from aionode._process.tracebacks import traceback_text
 from aionode.arguments import Usage, parse_arguments

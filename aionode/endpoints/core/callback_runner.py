@@ -13,9 +13,10 @@ import os
 import sys
 import weakref
 from collections.abc import Awaitable, Callable, Coroutine, Generator
-from dataclasses import dataclass, field
 from types import FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from msgspec import Struct, field
 
 from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
 from aionode._process.processor_waits import WAITS
@@ -63,8 +64,7 @@ LOOKED_AT_NS = 1_000_000_000
 """From how long on a callback that hardly ran may have been stopped in a debugger."""
 
 
-@dataclass(frozen=True, slots=True)
-class CallbackContext:
+class CallbackContext(Struct, frozen=True):
     """The callback that failed, as passed to an `on_error` function.
 
     Attributes:
@@ -346,8 +346,7 @@ class CallbackRunner:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Callbacks:
+class Callbacks(Struct, frozen=True):
     """The shared settings and state for running one node's callbacks.
 
     Attributes:

@@ -9,12 +9,12 @@ from __future__ import annotations
 import enum
 import json
 import os
-import secrets
 import sys
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
+
+from msgspec import Struct
 
 from aionode._process.stopped import pid_space
 from aionode.clock import perf_ns
@@ -102,8 +102,7 @@ LEAST_BYTES: Final = 65_536
 """The minimum of either limit: messages up to this size are sent at once."""
 
 
-@dataclass(frozen=True, slots=True)
-class Network:
+class Network(Struct, frozen=True):
     """The network settings of a context.
 
     Attributes:
@@ -371,7 +370,7 @@ def new_participant() -> str:
     first = SOUGHT if udp_sockets() is None else LATER
     space = pid_space()
     process = "" if space is None else f"{space:04x}{os.getpid():08x}"
-    rest = secrets.token_hex(10)[: 19 - len(process)]
+    rest = os.urandom(10).hex()[: 19 - len(process)]
     return f"{first}{perf_ns() >> 16:012x}{process}{rest}"
 
 

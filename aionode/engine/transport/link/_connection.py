@@ -6,7 +6,6 @@ import array
 import asyncio
 import logging
 import os
-import secrets
 import socket
 from collections import deque
 from contextlib import suppress
@@ -163,7 +162,7 @@ class Connection:
         owner: LinkOwner,
     ) -> None:
         self.participant = ""
-        self.secret = secrets.token_bytes(SECRET_SIZE)
+        self.secret = os.urandom(SECRET_SIZE)
         self.pool = pool
         self.receivers = ReceiverTable()
         self._loop = loop

@@ -8,7 +8,6 @@ import socket
 import stat
 import struct
 import sys
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -114,6 +113,8 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     if runtime:
         folder = Path(runtime) / "aionode"
     else:
+        import tempfile  # it loads archives, which few programs need
+
         folder = Path(tempfile.gettempdir()) / f"aionode-{os.getuid()}"
     size = len(os.fsencode(folder)) + NAME_BYTES
     if size > MAX_PATH_BYTES:  # some contexts with shorter ids would fit

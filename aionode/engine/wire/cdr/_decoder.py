@@ -8,9 +8,10 @@ reports the exact position of the error or succeeds, as it is more lenient.
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from aionode.engine.wire.cdr._codegen import CodeBuilder, NeedsFallback
 from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
@@ -79,8 +80,7 @@ def element_decoder(
     return DecoderGenerator(cls, family, of_bytes=of_bytes).element()
 
 
-@dataclass(frozen=True, slots=True)
-class RunArray:
+class RunArray(Struct, frozen=True):
     """An array of fixed size in a run: target variable, element type, offset and length."""
 
     target: str

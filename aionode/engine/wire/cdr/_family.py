@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from aionode.message import Message
@@ -12,8 +13,7 @@ if TYPE_CHECKING:
 __all__ = ["OWN", "MessageFamily"]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MessageFamily:
+class MessageFamily(Struct, frozen=True, eq=False):
     """Other Python classes for the messages described by aionode's classes.
 
     The codec takes the names and types of the fields from aionode's class, and reads and creates

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from msgspec import Struct
 
 from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
 from aionode.message import fields
@@ -57,8 +58,7 @@ LONGEST_PACKED = 64
 Pack: TypeAlias = Callable[..., bytes]
 
 
-@dataclass(frozen=True, slots=True)
-class Primitive:
+class Primitive(Struct, frozen=True):
     """How a value of a primitive type is encoded.
 
     Attributes:
@@ -193,8 +193,7 @@ def uniform_alignment(cls: Any) -> int | None:
     return alignments.pop() if len(alignments) == 1 else None
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(Struct, frozen=True):
     """One value of a run.
 
     Attributes:

@@ -8,10 +8,10 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from aionode._process.concurrency import checkpoint
 from aionode.engine.transport.network import DiscoveryRange, Network, network_from

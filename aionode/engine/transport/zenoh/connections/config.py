@@ -6,7 +6,7 @@ A probe is a short-lived session that reads the tokens seen by one endpoint.
 from __future__ import annotations
 
 import json
-import secrets
+import os
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -128,4 +128,4 @@ def open_probe(network: Network, endpoint: str, mode: str = "client") -> zenoh.S
         "transport/unicast/open_timeout": 700,
         "transport/shared_memory/enabled": False,
     }
-    return zenoh.open(load_config(network, {}, PROBE_IDS + secrets.token_hex(12), settings))
+    return zenoh.open(load_config(network, {}, PROBE_IDS + os.urandom(12).hex(), settings))

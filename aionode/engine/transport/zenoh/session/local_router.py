@@ -10,7 +10,7 @@ with static peers opens a router that links it with them, and accepts no peers.
 from __future__ import annotations
 
 import logging
-import secrets
+import os
 import threading
 from contextlib import closing, suppress
 from typing import TYPE_CHECKING, Final
@@ -130,7 +130,7 @@ class LocalRouter:
             settings = router_settings(
                 [] if there else [here], (*self._network.far_peers, *([here] if there else ()))
             )
-            config = load_config(self._network, {}, ROUTER_IDS + secrets.token_hex(12), settings)
+            config = load_config(self._network, {}, ROUTER_IDS + os.urandom(12).hex(), settings)
             try:
                 router = self._router = zenoh.open(config)
             except zenoh.ZError as error:  # another process was faster

@@ -9,10 +9,10 @@ import selectors
 import socket
 import threading
 from contextlib import ExitStack, closing, suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 import zenoh
+from msgspec.structs import replace
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.network import network_from, pid_of

@@ -13,8 +13,9 @@ there are three spare ones.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
+
+from msgspec import Struct
 
 from aionode.engine.transport.network import ROUTER_PORT, DiscoveryRange
 from aionode.engine.transport.zenoh._defects import (
@@ -85,8 +86,7 @@ RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_f
 """Intervals at which an endpoint that does not answer is dialled again."""
 
 
-@dataclass(frozen=True, slots=True)
-class Neighbours:
+class Neighbours(Struct, frozen=True):
     """The other sessions of a machine that lists them, as one sees them that is about to open.
 
     Attributes:
