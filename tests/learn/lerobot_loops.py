@@ -1,16 +1,19 @@
 """LeRobot 0.6's own programs drive a robot of aionode: ``make lerobot``.
 
 Run with the Python of an environment that has LeRobot, aionode and `lerobot_robot_aionode`. The
-robot and its leader are a node in a thread of this process. `lerobot-record` records an episode
-from them, its loader reads the data set, and the actions of a mock policy go through the wrapper by
-which `lerobot-rollout` calls a robot.
+robot and its leader are a node in a thread of this process, or with ``--rclpy`` one of rclpy in
+another process, over DDS. `lerobot-record` records an episode from them, its loader reads the data
+set, and `lerobot-rollout` lets a mock policy drive.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+import os
 import shutil
+import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -145,38 +148,61 @@ def record(folder: Path, contract: Path) -> None:
     print(f"recorded: {len(data)} rows; picture and joint differ by {max(errors):.3f} at most")
 
 
-def roll_out(contract: Path) -> None:
-    """Send actions by what `lerobot-rollout` calls the robot through."""
-    from lerobot.robots import make_robot_from_config
-    from lerobot.rollout.robot_wrapper import ThreadSafeRobot
-    from lerobot_robot_aionode import AionodeRobotConfig
+def roll_out(folder: Path, contract: Path) -> None:
+    """Let a mock policy drive, with the program of LeRobot."""
+    from lerobot.scripts import lerobot_rollout
+    from lerobot_policy import save  # type: ignore[import-not-found]  # beside this program
 
-    robot = make_robot_from_config(AionodeRobotConfig(contract=str(contract)))
-    robot.connect()
-    wrapped = ThreadSafeRobot(robot)
-    seen = 0.0
-    for step in range(round(SECONDS * FPS)):
-        seen = wrapped.get_observation()["shoulder.pos"]
-        wrapped.send_action({"shoulder.pos": 0.5 * math.sin(step / FPS)})
-        threading.Event().wait(1 / FPS)
-    robot.disconnect()
-    print(f"rolled out: {round(SECONDS * FPS)} actions; the joint was at {seen:.3f} at the end")
+    save(folder / "policy", HEIGHT, WIDTH)
+    sys.argv = [
+        "lerobot-rollout",
+        "--robot.type=aionode",
+        f"--robot.contract={contract}",
+        f"--policy.path={folder / 'policy'}",
+        "--task=move",
+        f"--duration={SECONDS}",
+        "--return_to_initial_position=false",
+        f"--fps={FPS}",
+    ]
+    lerobot_rollout.main()
+
+
+class RclpyArm:
+    """The same robot as a program of rclpy, over DDS."""
+
+    def __init__(self) -> None:
+        program = [sys.executable, str(Path(__file__).with_name("lerobot_arm.py"))]
+        self._program = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
+        self.commands, self.angle = 0, 0.0
+
+    def stop(self) -> None:
+        """End it, and read what came."""
+        self._program.send_signal(signal.SIGINT)
+        told, _ = self._program.communicate(timeout=20)
+        commands, angle = told.split()[-2:]
+        self.commands, self.angle = int(commands), float(angle)
 
 
 def main() -> None:
-    """Do both."""
+    """Do both; with ``--rclpy``, beside a robot of rclpy over DDS."""
+    from lerobot_policy import TARGET
+
+    is_rclpy = "--rclpy" in sys.argv
+    if is_rclpy:
+        os.environ["AIONODE_TRANSPORT"] = "rcl"
     folder = Path(tempfile.mkdtemp())
     contract = folder / "contract.yaml"
     contract.write_text(yaml.safe_dump(CONTRACT))
-    arm = Arm()
+    arm = RclpyArm() if is_rclpy else Arm()
     try:
         record(folder, contract)
-        print(f"the arm got {arm.commands} commands")
-        roll_out(contract)
-        print(f"the arm got {arm.commands} commands, and stands at {arm.angle:.3f}")
+        roll_out(folder, contract)
     finally:
         arm.stop()
         shutil.rmtree(folder)
+    print(f"the arm got {arm.commands} commands, and stands at {arm.angle:.3f} of {TARGET}")
+    assert arm.commands > SECONDS * FPS
+    assert abs(arm.angle - TARGET) < 0.02
 
 
 if __name__ == "__main__":
