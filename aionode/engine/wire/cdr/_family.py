@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from msgspec import Struct
 
-if TYPE_CHECKING:
-    from aionode.message import Message
+from aionode.message import Message
 
 __all__ = ["OWN", "MessageFamily"]
 
