@@ -20,7 +20,7 @@ from aionode.engine.transport.link._transport import LinkTransport
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from tests.support.arrivals import writers_of
-from tests.support.peers import quiet_node
+from tests.support.peers import isolated_environment, quiet_node
 
 __all__ = [
     "Counting",
@@ -44,7 +44,12 @@ PERIOD_S = 0.001
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Give a test its own folder for sockets, with a short enough path."""
+    """Give a test its own folder for sockets, with a short enough path.
+
+    Its contexts reach each other, but nothing else on the machine.
+    """
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
     root = Path(tempfile.mkdtemp(prefix="aio"))
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
     monkeypatch.setattr(manager, "AGAIN_S", 0.01)
