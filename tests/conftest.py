@@ -131,8 +131,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use two workers more than there are processors: tests of processes mostly wait."""
-    return (os.cpu_count() or 1) + 2
+    """Use several workers for each processor: two thirds of a test's time are waits."""
+    return 2 * (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -184,14 +184,24 @@ def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..
 def pytest_asyncio_loop_factories(
     config: pytest.Config, item: pytest.Item
 ) -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
-    """Run each async test on asyncio and on uvloop; not make what would only be deselected."""
-    factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {"asyncio": debugging_loop}
+    """Run each async test on asyncio and on uvloop; not make what would only be deselected.
+
+    With "not first_loop" among the selected marks, what does not depend on the loop runs on uvloop.
+    """
+    factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {
+        "asyncio": debugging_loop,
+        "uvloop": uvloop.new_event_loop,
+    }
     expression = config.option.markexpr
-    one_loop = item.get_closest_marker("one_loop") and "not stress" in expression
-    second_loop = not item.nodeid.startswith(BOTH_LOOPS) and "not second_loop" in expression
-    if not (one_loop or second_loop):
-        factories["uvloop"] = uvloop.new_event_loop
-    return factories
+    if item.get_closest_marker("one_loop"):
+        left_out = "uvloop" if "not stress" in expression else ""
+    elif item.nodeid.startswith(BOTH_LOOPS):
+        left_out = ""
+    elif "not second_loop" in expression:
+        left_out = "uvloop"
+    else:
+        left_out = "asyncio" if "not first_loop" in expression else ""
+    return {name: factory for name, factory in factories.items() if name != left_out}
 
 
 @pytest.fixture(autouse=True)
