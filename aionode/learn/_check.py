@@ -134,9 +134,9 @@ def take(
 def silence_of(node: Node, contract: Contract, collected: Collected, end_ns: int) -> list[str]:
     """Return whether an observed topic fell silent before the end, with what to do."""
     entry = collected.entry
-    if entry in contract.actions or not collected.rows or len(collected.rows) < collected.count:
+    if entry in contract.actions or not collected.times or len(collected.times) < collected.count:
         return []  # what did not fit is told already
-    silent_ns = end_ns - collected.rows[-1][1]
+    silent_ns = end_ns - collected.arrivals[-1]
     if silent_ns <= contract.max_age(entry) * S_TO_NS + SILENT_NS:
         return []
     name = node.resolve_topic_name(entry.topic)

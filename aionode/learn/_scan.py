@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import difflib
 import struct
-from typing import TYPE_CHECKING, Any, Final
+from array import array
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from aionode.bag.files.record import MOST_NS
 from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, MessageError
 from aionode.learn._alignment import Series
 
@@ -30,13 +32,30 @@ FIRST_FIELD: Final = 4
 
 
 class Collected:
-    """The messages of one entry, while they are read."""
+    """The messages of one entry, while they are read.
+
+    In arrays, which take a tenth of the memory of lists: a recording of an hour has a million.
+
+    Attributes:
+        entry: The entry of the contract.
+        is_image: Whether its messages are pictures.
+        times: Their times in nanoseconds, by header or arrival.
+        arrivals: When they arrived.
+        ordinals: Their places among all messages of their topic.
+        values: The numbers of one after the other; none of pictures.
+        count: How many messages there were, with those that were left out.
+        backwards: How many were left out because their time is not after the one before.
+        invalid: How many could not be read.
+        problem: What was wrong with the first of these.
+    """
 
     def __init__(self, entry: Observation | Action) -> None:
         self.entry = entry
         self.is_image = bool(getattr(entry, "image", None))
-        self.rows: list[tuple[int, int, int]] = []
-        self.values: list[Any] = []
+        self.times = array("q")
+        self.arrivals = array("q")
+        self.ordinals = array("q")
+        self.values = array("f")
         self.count = 0
         self.backwards = 0
         self.invalid = 0
@@ -46,38 +65,45 @@ class Collected:
         """Take a message of the topic."""
         ordinal, self.count = self.count, self.count + 1
         try:
-            time = self.time_of(record)
-            if self.rows and time <= self.rows[-1][0]:
+            arrival = min(record.time_ns, MOST_NS)
+            time = self.time_of(record, arrival)
+            if self.times and time <= self.times[-1]:
                 self.backwards += 1
                 return
             if not self.is_image:
-                self.values.append(self.entry.value(record.message))
-            elif not self.rows:
+                self.values.frombytes(self.entry.value(record.message).tobytes())
+            elif not self.times:
                 self.entry.value(record.message)  # is it such a picture at all?
         except UNREADABLE as error:
             self.invalid += 1
             self.problem = self.problem or str(error)
             return
-        self.rows.append((time, record.time_ns, ordinal))
+        self.times.append(time)
+        self.arrivals.append(arrival)
+        self.ordinals.append(ordinal)
 
-    def time_of(self, record: Record) -> int:
+    def time_of(self, record: Record, arrival: int) -> int:
         """Return the time of a message; that of a picture is read without the picture."""
         if not self.entry.is_captured:
-            return record.time_ns
+            return arrival
         if not self.is_image:
-            return self.entry.time_of(record.message, record.time_ns)
+            return self.entry.time_of(record.message, arrival)
         if len(record.raw) < FIRST_FIELD + 8:
             raise MessageError(self.entry.type, f"{len(record.raw)} bytes only")
         sec, nanosec = STAMPS[record.raw[1] & 1].unpack_from(record.raw, FIRST_FIELD)
-        return int(sec) * 1_000_000_000 + int(nanosec) or record.time_ns
+        return int(sec) * 1_000_000_000 + int(nanosec) or arrival
 
     def series(self) -> Series:
         """Return what was taken."""
-        rows = np.array(self.rows, np.int64).reshape(len(self.rows), 3)
         columns = 0 if self.is_image else self.entry.shape[0]
-        values = np.array(self.values, np.float64).reshape(len(self.rows), columns)
         return Series(
-            rows[:, 0], rows[:, 1], values, rows[:, 2], self.backwards, self.invalid, self.problem
+            np.array(self.times, np.int64),
+            np.array(self.arrivals, np.int64),
+            np.array(self.values, np.float64).reshape(len(self.times), columns),
+            np.array(self.ordinals, np.int64),
+            self.backwards,
+            self.invalid,
+            self.problem,
         )
 
 

@@ -13,9 +13,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aionode import image
+from aionode.bag import Record, TopicInfo
+from aionode.engine.wire import cdr
 from aionode.errors import BagError, DatasetError
+from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Limits, check_dataset, export
 from aionode.learn._alignment import Series, aligned
+from aionode.learn._scan import Collected
 from tests.support.demonstrations import (
     HEIGHT,
     SPEED,
@@ -74,6 +78,18 @@ def test_times_are_exact_and_true_stamps_are_kept(tmp_path: Path) -> None:
     assert 0 <= read.rows[0]["stamp"] - START_NS / 1e9 < 0.1
     assert read.info["features"]["age"]["names"] == ["/camera0", "/joint_states", "/command"]
     assert all(0 <= age <= 0.05 for row in read.rows for age in row["age"])
+
+
+def test_a_time_that_no_clock_has_is_the_latest_one() -> None:
+    """Bags hold times of 64 bits without a sign; a second message of that time is not after it."""
+    found = Collected(contract().actions[0])
+    command = Float64MultiArray(data=[0.5])
+    info = TopicInfo(name="/command", type="std_msgs/msg/Float64MultiArray")
+    for _ in range(2):
+        found.take(Record(info, 2**64 - 1, 0, 0, cdr.encode(command)))
+    read = found.series()
+    assert (read.times.tolist(), read.values.tolist()) == ([2**63 - 1], [[0.5]])
+    assert read.backwards == 1
 
 
 def test_an_action_answers_the_picture_of_its_row(tmp_path: Path) -> None:
