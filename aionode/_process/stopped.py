@@ -1,7 +1,8 @@
 """Whether another process of this machine is stopped, by a signal or a debugger.
 
 The system knows, and asking it wakes nobody: a process that is merely busy, or waits for a
-processor, is not stopped, however long it is silent.
+processor, is not stopped, however long it is silent. Nor is one that is stopped again and again for
+a moment, as each system call does under `strace`.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Final
 
 import xxhash
 
-__all__ = ["is_stopped", "pid_space"]
+__all__ = ["WatchedProcess", "is_stopped", "pid_space"]
 
 BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
 PID_NAMESPACE: Final = Path("/proc/self/ns/pid")
@@ -46,3 +47,41 @@ def is_stopped(pid: int) -> bool:
         return False
     finally:
         os.close(descriptor)
+
+
+class WatchedProcess:
+    """Another process that is looked at again and again.
+
+    Most processes have run between two looks, which their main thread's processor time tells in an
+    eighth of the time that `is_stopped` takes.
+
+    Args:
+        pid: The process.
+    """
+
+    __slots__ = ("_descriptor", "_pid", "_ran")
+
+    def __init__(self, pid: int) -> None:
+        self._pid = pid
+        self._ran = b""
+        self._descriptor: int | None = None
+        with suppress(OSError):  # some systems do not count it
+            self._descriptor = os.open(f"/proc/{pid}/schedstat", os.O_RDONLY)
+
+    def is_stopped(self) -> bool:
+        """Return whether it is stopped, and has not run since the last look."""
+        if self._descriptor is not None:
+            try:
+                ran = os.pread(self._descriptor, 128, 0)
+            except OSError:  # it has ended
+                return False
+            if ran != self._ran:
+                self._ran = ran
+                return False
+        return is_stopped(self._pid)
+
+    def close(self) -> None:
+        """Release its descriptor."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None

@@ -6,13 +6,14 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from aionode._process import stopped
-from aionode._process.stopped import is_stopped, pid_space
+from aionode._process.stopped import WatchedProcess, is_stopped, pid_space
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="ne
 @pytest.fixture
 def process() -> Iterator[subprocess.Popen[bytes]]:
     """Return a process that waits."""
-    with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE) as process:
+    with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         yield process
         process.kill()
 
@@ -47,6 +48,73 @@ def test_a_process_that_has_ended_is_not_stopped(process: subprocess.Popen[bytes
     process.wait()
 
     assert not is_stopped(process.pid)
+
+
+def stop(process: subprocess.Popen[bytes]) -> None:
+    """Stop a process, and wait until it is stopped."""
+    process.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, process.pid, os.WSTOPPED)
+
+
+def run_on(process: subprocess.Popen[bytes]) -> None:
+    """Let a process run for a moment."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.send_signal(signal.SIGCONT)
+    process.stdin.write(b"x")
+    process.stdin.flush()
+    process.stdout.read(1)
+
+
+def test_a_process_is_stopped_if_it_has_not_run_since_the_last_look(
+    process: subprocess.Popen[bytes],
+) -> None:
+    """The first look after the signal cannot tell when it last ran."""
+    with closing(WatchedProcess(process.pid)) as watched:
+        assert not watched.is_stopped()
+        stop(process)
+        watched.is_stopped()
+        assert watched.is_stopped()
+        assert watched.is_stopped()
+        process.send_signal(signal.SIGCONT)
+        os.waitid(os.P_PID, process.pid, os.WCONTINUED)
+        assert not watched.is_stopped()
+
+
+def test_a_process_that_is_stopped_at_each_look_but_runs_between_is_not_stopped(
+    process: subprocess.Popen[bytes],
+) -> None:
+    """As under strace, where each system call stops it, and it still answers."""
+    with closing(WatchedProcess(process.pid)) as watched:
+        for _ in range(4):
+            run_on(process)
+            stop(process)
+            assert is_stopped(process.pid)
+            assert not watched.is_stopped()
+
+
+def test_where_processor_time_is_not_counted_the_state_alone_tells(
+    process: subprocess.Popen[bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some kernels are built without it."""
+    real = os.open
+    monkeypatch.setattr(
+        "os.open", lambda path, flags: real(f"{path}".replace("sched", "no"), flags)
+    )
+    with closing(WatchedProcess(process.pid)) as watched:
+        assert not watched.is_stopped()
+        stop(process)
+        assert watched.is_stopped()
+
+
+def test_a_watched_process_that_has_ended_is_not_stopped(
+    process: subprocess.Popen[bytes],
+) -> None:
+    """Another process may have its pid by then."""
+    with closing(WatchedProcess(process.pid)) as watched:
+        process.kill()
+        process.wait()
+        assert not watched.is_stopped()
 
 
 def test_pids_of_another_namespace_or_boot_are_told_apart(

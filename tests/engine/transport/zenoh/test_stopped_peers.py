@@ -24,12 +24,14 @@ class Scene:
         peers: The connected sessions.
         stopped: The processes that are stopped.
         cuts: The peers of each cut.
+        watched: The processes that are looked at.
     """
 
     def __init__(self, loop: SteppedLoop, clock: ManualClock) -> None:
         self.peers: set[str] = set()
         self.stopped: set[int] = set()
         self.cuts: list[set[str]] = []
+        self.watched: list[int] = []
         self._loop = loop
         self._clock = clock
 
@@ -37,6 +39,13 @@ class Scene:
         """Lose peers."""
         self.cuts.append(zids)
         self.peers -= zids
+
+    def watch(self, pid: int) -> Any:
+        """Look at a process."""
+        self.watched.append(pid)
+        return SimpleNamespace(
+            is_stopped=lambda: pid in self.stopped, close=lambda: self.watched.remove(pid)
+        )
 
     def connect(self, pid: int, monkeypatch: pytest.MonkeyPatch) -> str:
         """Connect with a process of this machine; return its id."""
@@ -59,7 +68,7 @@ async def scene(monkeypatch: pytest.MonkeyPatch) -> Any:
         scene = Scene(loop, clock)
         monkeypatch.setattr(stopped_peers, "start_thread", threading.Thread.run)
         monkeypatch.setattr(stopped_peers, "cut_participants", scene.cut)
-        monkeypatch.setattr(stopped_peers, "is_stopped", scene.stopped.__contains__)
+        monkeypatch.setattr(stopped_peers, "WatchedProcess", scene.watch)
         watch = StoppedPeers(scene.peers)
         session: Any = SimpleNamespace()
 
@@ -70,6 +79,7 @@ async def scene(monkeypatch: pytest.MonkeyPatch) -> Any:
             tasks.create_task(start())
         yield scene
         watch.stop()
+        assert scene.watched == []
 
 
 async def test_a_stopped_process_is_given_up(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,13 +124,24 @@ async def test_a_process_that_returns_and_is_stopped_again_is_given_up_again(
     assert scene.cuts == [{frozen}, {frozen}]
 
 
-async def test_sessions_of_other_software_are_not_looked_at(
+async def test_a_process_that_has_gone_is_looked_at_no_more(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Each one that is looked at takes a descriptor."""
+    gone = scene.connect(11, monkeypatch)
+    scene.connect(12, monkeypatch)
+    await scene.step(LOOK_S)
+    scene.peers.remove(gone)
+
+    await scene.step(LOOK_S)
+
+    assert scene.watched == [12]
+
+
+async def test_sessions_of_other_software_are_not_looked_at(scene: Scene) -> None:
     """The digits of their ids say nothing; their own lease tells."""
-    monkeypatch.setattr(stopped_peers, "is_stopped", lambda _pid: True)
     scene.peers.update({"a1", "f" * 32, "0" * 32})
 
     await scene.step(GIVEN_UP_S)
 
-    assert scene.cuts == []
+    assert scene.watched == []

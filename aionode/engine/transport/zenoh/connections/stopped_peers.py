@@ -16,7 +16,7 @@ import threading
 from typing import TYPE_CHECKING, Final
 
 from aionode._process.later import Later
-from aionode._process.stopped import is_stopped
+from aionode._process.stopped import WatchedProcess
 from aionode.engine.transport.network import pid_of
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh.connections.sockets import cut_participants
@@ -30,12 +30,12 @@ __all__ = ["StoppedPeers"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-LOOK_S: Final = 2.5
+LOOK_S: Final = 2.0
 """The interval of looks, in seconds."""
 
 LOOKS: Final = 4
-"""How often in a row a process must be seen stopped: it is given up after 7.5 to 10 s, as by a
-lease of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
+"""How often in a row a process must be seen stopped: it is given up after 6 to 10 s, as by a lease
+of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
 
 
 class StoppedPeers:
@@ -48,7 +48,8 @@ class StoppedPeers:
     def __init__(self, participants: Collection[str]) -> None:
         self._participants = participants
         self._session: zenoh.Session | None = None
-        self._pids: dict[str, int | None] = {}
+        # The peers, and the processes of those that can be looked at.
+        self._processes: dict[str, WatchedProcess | None] = {}
         self._looks: dict[str, int] = {}  # how often each was seen stopped, in a row
         self._later = Later()
 
@@ -61,7 +62,10 @@ class StoppedPeers:
         """Stop looking."""
         self._later.cancel()
         self._session = None
-        self._pids.clear()
+        for process in self._processes.values():
+            if process is not None:
+                process.close()
+        self._processes.clear()
         self._looks.clear()
 
     def _look(self) -> None:
@@ -69,18 +73,16 @@ class StoppedPeers:
         if session is None:
             return
         self._later.call(LOOK_S, self._look)
-        known, looks = self._pids, self._looks
-        self._pids = {
-            zid: known[zid] if zid in known else pid_of(zid) for zid in self._participants
-        }
+        self._meet()
+        looks = self._looks
         self._looks = {
             zid: looks.get(zid, 0) + 1
-            for zid, pid in self._pids.items()
-            if pid is not None and is_stopped(pid)
+            for zid, process in self._processes.items()
+            if process is not None and process.is_stopped()
         }
         lost = {zid for zid, count in self._looks.items() if count == LOOKS}
         if lost:
-            pids = sorted(filter(None, map(self._pids.get, lost)))
+            pids = sorted(filter(None, map(pid_of, lost)))
             logger.info(
                 "processes %s are stopped; cutting their connections, which Zenoh makes anew when "
                 "they go on",
@@ -91,3 +93,15 @@ class StoppedPeers:
                     target=cut_participants, args=(session, lost), name="aionode-zenoh"
                 )
             )
+
+    def _meet(self) -> None:
+        """Look at new peers from now on, and no longer at those that have gone."""
+        processes = self._processes
+        for zid in processes.keys() - self._participants:
+            process = processes.pop(zid)
+            if process is not None:
+                process.close()
+        for zid in self._participants:
+            if zid not in processes:
+                pid = pid_of(zid)
+                processes[zid] = None if pid is None else WatchedProcess(pid)
