@@ -6,10 +6,13 @@ It reads commands from its standard input, one per line, and answers each with o
 from __future__ import annotations
 
 import asyncio
+import gc
 import json
+import os
 import sys
 import time
 from contextlib import AsyncExitStack
+from pathlib import Path
 from typing import Any
 
 from aionode import Context, Node
@@ -45,6 +48,30 @@ async def meet(nodes: list[Node], wanted: int, wait_s: float) -> list[float]:
         await asyncio.sleep(POLL_S)
 
 
+async def know(node: Node, wanted: int, wait_s: float) -> int:
+    """Wait until a node knows a number of the topics that processes have; return how many."""
+    ends = time.monotonic() + wait_s
+    while True:
+        known = sum(name.startswith("/of_") for name, _ in node.get_topic_names_and_types())
+        if known >= wanted or time.monotonic() > ends:
+            return known
+        await asyncio.sleep(POLL_S)
+
+
+async def idle(seconds: float) -> dict[str, float]:
+    """Return the share of a core that this process uses while idle, in percent, and its memory."""
+    gc.collect()
+    began = time.process_time()
+    await asyncio.sleep(seconds)
+    return {"core": 100 * (time.process_time() - began) / seconds, "kb": resident_kb()}
+
+
+def resident_kb() -> float:
+    """Return the memory of this process."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1000
+
+
 def found(node: Node) -> list[int]:
     """Return how many nodes a node knows, and with how many contexts its own is linked."""
     by_link: Any = next(t for t in node.context.transports if hasattr(t, "manager"))
@@ -60,28 +87,48 @@ async def serve(name: str, contexts: int, *, link: bool) -> None:
             context = await stack.enter_async_context(Context(link=link))
             node = Node(f"{name}_{number}", context=context)
             nodes.append(await stack.enter_async_context(node))
-        node = nodes[0]
-        node.create_subscription(String, "warm_up", lambda _: None, 10)
+        nodes[0].create_subscription(String, "warm_up", lambda _: None, 10)
         made: list[Any] = []
         say("ready")
         while words := (await loop.run_in_executor(None, sys.stdin.readline)).split():
-            if words[0] in ("make", "crowd"):
-                for number in range(int(words[1])):
-                    topic = "crowd" if words[0] == "crowd" else f"t{number}"
-                    made.append(node.create_subscription(String, topic, lambda _: None, 10))
-                    await pause(number)
-            elif words[0] == "destroy":
-                for number, subscription in enumerate(made):
-                    subscription.destroy()
-                    await pause(number)
-            elif words[0] == "join":
-                for each in nodes:
-                    made.append(each.create_publisher(String, "everyone", 10))
-                    made.append(each.create_subscription(String, "everyone", lambda _: None, 10))
-            if words[0] == "meet":
-                say(await meet(nodes, int(words[1]), float(words[2])))
-            else:
-                say({"cpu_s": time.process_time(), "threads": threads()})
+            await change(words, nodes, made)
+            say(await answer(words, nodes))
+
+
+async def change(words: list[str], nodes: list[Node], made: list[Any]) -> None:
+    """Create or destroy what a command says, if it is one for that."""
+    node = nodes[0]
+    match words:
+        case ["make" | "crowd" as what, count]:
+            for number in range(int(count)):
+                topic = "crowd" if what == "crowd" else f"t{number}"
+                made.append(node.create_subscription(String, topic, lambda _: None, 10))
+                await pause(number)
+        case ["destroy"]:
+            for number, subscription in enumerate(made):
+                subscription.destroy()
+                await pause(number)
+        case ["join"]:
+            for each in nodes:
+                made.append(each.create_publisher(String, "everyone", 10))
+                made.append(each.create_subscription(String, "everyone", lambda _: None, 10))
+        case ["topics", count, own, other]:
+            for number in range(int(count)):
+                topic = f"of_{other}/t{number}"
+                made.append(node.create_publisher(String, f"of_{own}/t{number}", 10))
+                made.append(node.create_subscription(String, topic, lambda _: None, 10))
+
+
+async def answer(words: list[str], nodes: list[Node]) -> Any:
+    """Return the answer to a command."""
+    match words:
+        case ["meet", wanted, wait_s]:
+            return await meet(nodes, int(wanted), float(wait_s))
+        case ["know", wanted, wait_s]:
+            return await know(nodes[0], int(wanted), float(wait_s))
+        case ["idle", seconds]:
+            return await idle(float(seconds))
+    return {"cpu_s": time.process_time(), "threads": threads()}
 
 
 def threads() -> int:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import statistics
 import subprocess
 import sys
 import time
-from contextlib import asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -30,6 +31,17 @@ CROWDS: Final = (30, 100, 300)
 WAITERS: Final = (100, 300, 1000)
 PROCESSES: Final = ((3, 1), (10, 1), (30, 1), (5, 5), (10, 10), (100, 1))
 """How many processes, and how many contexts in each."""
+
+SYSTEMS: Final = (10, 30, 100)
+"""How many processes have `TOPICS` topics each."""
+
+TOPICS: Final = 10
+
+SETTLE_S: Final = 15.0
+"""Time after the last change until processes are idle."""
+
+IDLE_S: Final = 50.0
+"""How long idle processes are looked at: each gives a sign of life once in this time."""
 
 CHANGES: Final = 100
 """How many changes of the graph are measured."""
@@ -95,6 +107,24 @@ class ProcessesRow:
     contexts: int
     known_s: float
     cpu_s: float
+    growth: float
+    missing: str
+
+
+@dataclass(frozen=True)
+class SystemRow:
+    """What each of many processes costs that has topics and is idle.
+
+    Each publishes its topics, and subscribes to those of the next one. The memory for each topic is
+    what a process has grown by since it knew the nodes and no topics. `growth` is that of the
+    processor.
+    """
+
+    processes: int
+    topics: int
+    known_s: float
+    core_percent: float
+    kb_each_topic: float
     growth: float
     missing: str
 
@@ -312,6 +342,44 @@ async def measure_processes(size: tuple[int, int], before: ProcessesRow | None) 
     )
 
 
+async def measure_system(count: int, before: SystemRow | None) -> SystemRow:
+    """Return what each of `count` processes costs that have `TOPICS` topics each."""
+    async with AsyncExitStack() as stack:
+        processes = []
+        for number in range(count):
+            process = await stack.enter_async_context(other(f"node_{number}", "link"))
+            await process.answer()
+            processes.append(process)
+
+        async def all_asked(*lines: str) -> list[Any]:
+            lines = lines if len(lines) == count else lines * count
+            async with asyncio.TaskGroup() as tasks:
+                asked = [
+                    tasks.create_task(process.ask(line))
+                    for process, line in zip(processes, lines, strict=True)
+                ]
+            return [task.result() for task in asked]
+
+        without = await all_asked(f"idle {SETTLE_S}")
+        began = time.perf_counter()
+        await all_asked(*(f"topics {TOPICS} {each} {(each + 1) % count}" for each in range(count)))
+        known = await all_asked(f"know {count * TOPICS} {WAIT_S}")
+        known_s = time.perf_counter() - began
+        await all_asked(f"idle {SETTLE_S}")
+        idle = await all_asked(f"idle {IDLE_S}")
+        grown = [now["kb"] - then["kb"] for now, then in zip(idle, without, strict=True)]
+        core = statistics.mean(each["core"] for each in idle)
+        return SystemRow(
+            count,
+            count * TOPICS,
+            round(known_s, 2),
+            round(core, 3),
+            round(statistics.mean(grown) / count / TOPICS, 2),
+            round(core / before.core_percent, 2) if before is not None else 1.0,
+            lacking("topics", min(known), count * TOPICS),
+        )
+
+
 def print_row(row: Any, *, header: bool) -> None:
     """Print a row, and before the first one the names of its columns."""
     columns = {name: value for name, value in asdict(row).items() if name != "missing"}
@@ -343,4 +411,5 @@ def measure_transports(*, quick: bool) -> dict[str, list[Any]]:
         measure(f"crowd_{route}", CROWDS, partial(measure_crowd, route))
     measure("waiters", WAITERS, measure_waiters)
     measure("processes", PROCESSES, measure_processes)
+    measure("systems", SYSTEMS, measure_system)
     return tables
