@@ -134,6 +134,7 @@ class ActionPlan:
         """Plan one action for now, in place of everything that was planned."""
         inside = np.clip(values, self._lower, self._upper)
         self._planned = [Planned(now_ns, inside, bool((inside != values).any()))]
+        self._done.clear()
 
     def take(self, now_ns: int) -> Planned | None:
         """Remove and return the action to be sent now; None if there is none.

@@ -207,3 +207,13 @@ def test_what_was_sent_is_forgotten_with_the_next_chunk(length: int) -> None:
 
     assert len(plan.left_over(0)) <= 100 * length
     assert len(plan._done) <= length
+
+
+def test_what_was_sent_is_forgotten_with_the_next_action() -> None:
+    """A person may drive for days as well."""
+    plan = plan_of()
+    for now_ns in range(0, 100 * PERIOD_NS, PERIOD_NS):
+        plan.put_now(np.zeros(1), now_ns)
+        assert plan.take(now_ns) is not None
+
+    assert len(plan._done) == 1
