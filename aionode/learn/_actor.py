@@ -272,14 +272,14 @@ class Actor:
 
         Raises:
             ValueError: the chunk has another shape, or numbers that are not finite.
+            MessageError: one that is due does not fit its field (a ValueError).
             LeaseExpiredError: the robot was stopped (a TimeoutError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         self._plan_rows(self._rows(chunk), since)
 
     def _plan_rows(self, rows: Numbers, since: Time) -> None:
-        if self._refusal is not None:
-            raise self._refusal
+        self._refuse_if_stopped()
         now_ns = self._clock.now_ns()
         if not self._plan.put(rows, since.nanoseconds + self._period_ns, now_ns):
             over_s = (now_ns - since.nanoseconds) / S_TO_NS - (len(rows) + 1) / self._fps
@@ -288,6 +288,7 @@ class Actor:
                 "ago"
             )
         self._send()
+        self._refuse_if_stopped()
 
     def send(self, action: npt.ArrayLike) -> None:
         """Send one action now, in place of what was planned: for a loop that has its own pace.
@@ -297,14 +298,15 @@ class Actor:
 
         Raises:
             ValueError: they are not as many, or not finite.
+            MessageError: one does not fit its field (a ValueError).
             LeaseExpiredError: the robot was stopped (a TimeoutError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         (row,) = self._rows(np.asarray(action, np.float64)[np.newaxis])
-        if self._refusal is not None:
-            raise self._refusal
+        self._refuse_if_stopped()
         self._plan.put_now(row, self._clock.now_ns())
         self._send()
+        self._refuse_if_stopped()
 
     def left_over(self, since: Time | None = None) -> Numbers:
         """Return what is planned as a chunk that answers an observation of some time would have it.
@@ -368,6 +370,10 @@ class Actor:
             self._refusal = error  # the block learns of it as its lease ends, or by its next chunk
             return False
         return True
+
+    def _refuse_if_stopped(self) -> None:
+        if self._refusal is not None:
+            raise self._refusal
 
     def _note_underrun(self, now_ns: int) -> None:
         self._plan.note_time(now_ns)

@@ -14,7 +14,7 @@ from aionode.errors import StaleError
 from aionode.qos import qos_profile_sensor_data
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Sequence
+    from collections.abc import AsyncGenerator, Callable, Sequence
     from types import TracebackType
     from typing import Self
 
@@ -147,7 +147,7 @@ class Observations:
         if entry.topic == self._topic:
             self._arrived.set()
 
-    async def at(self, frequency: float | None = None) -> AsyncIterator[Seen]:
+    async def at(self, frequency: float | None = None) -> AsyncGenerator[Seen, None]:
         """Yield what the robot shows at each message of the reference topic.
 
         Everything else is as of the time of that message. What came while the program was busy is

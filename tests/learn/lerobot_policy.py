@@ -68,8 +68,7 @@ class MockPolicy(PreTrainedPolicy):  # type: ignore[misc]  # LeRobot is not ther
         state, picture = batch["observation.state"], batch["observation.images.front"]
         assert picture.shape[1] == 3
         assert picture.max() > 0.5, "the marker is not there"
-        # LeRobot 0.6.1 removes two dimensions of length 1, so that one joint needs a third one
-        return (state + (self.target - state) / 10).reshape(1, 1, -1)
+        return state + (self.target - state) / 10
 
 
 def make_mock_pre_post_processors(config: MockConfig, **options: Any) -> Any:

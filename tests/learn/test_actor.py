@@ -441,6 +441,14 @@ async def test_a_number_that_its_field_cannot_hold_ends_the_block(robot: Robot) 
         await sent(robot, contract, 1.0, 300.0)
 
 
+async def test_a_number_that_its_field_cannot_hold_is_told_at_once(robot: Robot) -> None:
+    """By the call that has it, rather than by the next one."""
+    contract = contract_of(type="std_msgs/msg/Int8", topic="/gear", fields=["data"], upper=1e9)
+    async with contract.act(robot.node) as actor:
+        with pytest.raises(MessageError):
+            actor.send([300.0])
+
+
 async def test_a_lease_that_is_shorter_than_the_time_between_actions_is_refused(
     robot: Robot,
 ) -> None:

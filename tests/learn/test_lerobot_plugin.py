@@ -6,10 +6,12 @@ The robot is a node of another context, as its process would be.
 from __future__ import annotations
 
 import asyncio
+import copy
 import importlib
 import math
 import sys
 import threading
+import types
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import Any
@@ -19,11 +21,12 @@ import pytest
 import yaml
 
 from aionode import Context, Node
-from aionode.errors import ContractError, StaleError
+from aionode.errors import ContractError, MessageError, StaleError
 from aionode.image import from_numpy
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Contract
+from tests.learn.lerobot_stubs import described, differences
 
 ROOT = Path(__file__).parents[2]
 
@@ -85,6 +88,7 @@ class Arm:
     def __init__(self, node: Node) -> None:
         self.node = node
         self.got: list[float] = []
+        self.shown = 0
         self.changed = asyncio.Event()
         self.camera = node.create_publisher(Image, "/camera", 1)
         self.joints = node.create_publisher(JointState, "/joint_states", 1)
@@ -98,7 +102,8 @@ class Arm:
         state = JointState(name=["shoulder"], position=[0.5], velocity=[0.25])
         state.header.stamp = stamp
         self.joints.publish(state)
-        picture = from_numpy(np.full((4, 6, 3), 7, np.uint8), "rgb8")
+        self.shown += 1
+        picture = from_numpy(np.full((4, 6, 3), self.shown % 250, np.uint8), "rgb8")
         picture.header.stamp = stamp
         self.camera.publish(picture)
 
@@ -165,11 +170,22 @@ async def test_a_loop_of_lerobot_drives_a_robot(plugin: Any, arm: Arm) -> None:
     rows = await asyncio.to_thread(record)
 
     assert all(row["shoulder.pos"] == 0.5 and row["shoulder.vel"] == 0.25 for row in rows)
-    assert all(row["front"].shape == (4, 6, 3) and row["front"].max() == 7 for row in rows)
+    assert all(row["front"].shape == (4, 6, 3) for row in rows)
     assert all(row["front"].flags.writeable for row in rows)
     assert all(row["sent"] == {"shoulder.vel": 1.0} for row in rows)
     await arm.until(lambda: arm.got[-1:] == [0.0])
     assert set(arm.got) == {1.0, 0.0}
+
+
+async def test_each_picture_is_observed_once(plugin: Any, arm: Arm) -> None:
+    """However fast LeRobot's loop is: a picture that is there twice teaches to wait."""
+
+    def record() -> list[int]:
+        with made(plugin) as robot:
+            return [int(robot.get_observation()["front"].max()) for _ in range(8)]
+
+    pictures = await asyncio.to_thread(record)
+    assert len(set(pictures)) == 8
 
 
 async def test_a_pause_stops_the_robot_and_the_next_action_moves_it(plugin: Any, arm: Arm) -> None:
@@ -212,21 +228,79 @@ async def test_a_camera_that_freezes_is_an_error(plugin: Any, arm: Arm) -> None:
         await asyncio.to_thread(robot.disconnect)
 
 
+async def test_a_node_that_has_ended_is_an_error_that_says_why(plugin: Any, arm: Arm) -> None:
+    """A command that does not fit its field ends it, and LeRobot's loop would hang."""
+    action = {**CONTRACT["actions"][0], "type": "std_msgs/msg/Int8", "fields": ["data"]}
+    contract = {**CONTRACT, "actions": [{**action, "topic": "/gear", "lower": -1e9, "upper": 1e9}]}
+    Path("contract.yaml").write_text(yaml.safe_dump(contract))
+    robot = made(plugin)
+    await asyncio.to_thread(robot.connect)
+    await asyncio.to_thread(robot.send_action, {"shoulder.vel": 300.0})
+
+    def observe() -> None:
+        while True:
+            robot.get_observation()
+
+    with pytest.raises(ConnectionError) as caught:
+        await asyncio.to_thread(observe)
+    assert "its node has ended; connect again" in str(caught.value)
+    assert isinstance(caught.value.__cause__, MessageError)
+    assert not robot.is_connected
+    await asyncio.to_thread(robot.disconnect)
+
+
 async def test_a_teleoperator_has_the_commands_of_a_leader(plugin: Any, arm: Arm) -> None:
-    """The newest one; without a new one, what stops the robot."""
+    """The newest one, within the limits, as LeRobot records it; in silence, a stop."""
     teleop = made(plugin, "Teleoperator")
     await asyncio.to_thread(teleop.connect)
     try:
         assert await asyncio.to_thread(teleop.get_action) == {"shoulder.vel": 0.0}
         await arm.leader.wait_for_subscribers()
         async with asyncio.timeout(20):
-            arm.leader.publish(Float64MultiArray(data=[0.75]))
-            while await asyncio.to_thread(teleop.get_action) != {"shoulder.vel": 0.75}:
-                arm.leader.publish(Float64MultiArray(data=[0.75]))  # a command soon expires
+            arm.leader.publish(Float64MultiArray(data=[7.5]))
+            while await asyncio.to_thread(teleop.get_action) != {"shoulder.vel": 1.0}:
+                arm.leader.publish(Float64MultiArray(data=[7.5]))  # a command soon expires
             while await asyncio.to_thread(teleop.get_action) != {"shoulder.vel": 0.0}:
                 pass
     finally:
         await asyncio.to_thread(teleop.disconnect)
+
+
+async def test_a_teleoperator_that_holds_waits_for_its_leader(plugin: Any, arm: Arm) -> None:
+    """There is nothing to hold before, and LeRobot asks as soon as it is connected."""
+    contract = {**CONTRACT, "actions": [{**CONTRACT["actions"][0], "stop": "hold"}]}
+    Path("contract.yaml").write_text(yaml.safe_dump(contract))
+    teleop = made(plugin, "Teleoperator")
+    timer = arm.node.create_timer(
+        1 / 30, lambda: arm.leader.publish(Float64MultiArray(data=[0.75]))
+    )
+    await asyncio.to_thread(teleop.connect)
+    try:
+        timer.cancel()
+        assert await asyncio.to_thread(teleop.get_action) == {"shoulder.vel": 0.75}
+    finally:
+        await asyncio.to_thread(teleop.disconnect)
+
+
+async def test_a_rollout_may_have_one_action(
+    plugin: Any, arm: Arm, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """LeRobot 0.6 takes the dimension of the batch off twice, and indexes what is left."""
+
+    def make_robot_action(action: Any, features: dict[str, Any]) -> dict[str, float]:
+        squeezed = action.squeeze(0)
+        return {name: float(squeezed[index]) for index, name in enumerate(features["names"])}
+
+    module = types.ModuleType("lerobot.rollout.inference.sync")
+    vars(module)["make_robot_action"] = make_robot_action
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    robot = made(plugin)
+    await asyncio.to_thread(robot.connect)
+    await asyncio.to_thread(robot.disconnect)
+    for action in ([0.5], [0.5, 0.25]):  # the same for several
+        names = ["shoulder", "elbow"][: len(action)]
+        given = vars(module)["make_robot_action"](np.array(action), {"names": names})
+        assert given == dict(zip(names, action, strict=True))
 
 
 def test_a_device_that_is_not_connected_says_so(plugin: Any) -> None:
@@ -243,7 +317,51 @@ def test_a_device_that_is_not_connected_says_so(plugin: Any) -> None:
 def test_two_numbers_of_one_name_are_refused(plugin: Any) -> None:
     """LeRobot has one flat dict for all topics."""
     keys = importlib.import_module("lerobot_robot_aionode.keys")
-    twice = {**CONTRACT["observations"][1], "feature": "observation.leader", "topic": "/other"}
+    twice = {
+        **CONTRACT["observations"][1],
+        "topic": "/other",
+        "fields": ["position.shoulder"],
+        "names": ["shoulder.pos"],
+    }
     contract = Contract.from_dict({**CONTRACT, "observations": [*CONTRACT["observations"], twice]})
-    with pytest.raises(ValueError, match=r"shoulder.pos, shoulder.vel is there twice"):
+    with pytest.raises(ValueError, match=r"shoulder.pos is there twice"):
         keys.observation_keys(contract)
+
+
+@pytest.mark.parametrize(
+    ("group", "name", "wanted"),
+    [
+        ("observations", "observation.joints", "observation.state"),
+        ("observations", "front", "observation.images.NAME"),
+        ("actions", "action.arm", "action"),
+    ],
+)
+def test_a_feature_that_lerobot_would_rename_is_refused(
+    plugin: Any, group: str, name: str, wanted: str
+) -> None:
+    """A policy trained on the export of the same contract would look for it in vain."""
+    contract = copy.deepcopy(CONTRACT)
+    contract[group][-1 if wanted != "observation.images.NAME" else 0]["feature"] = name
+    Path("contract.yaml").write_text(yaml.safe_dump(contract))
+    with pytest.raises(ValueError, match=rf"^{name}: LeRobot's loops call it {wanted}"):
+        _ = made(plugin).action_features
+
+
+def test_stubs_that_differ_from_lerobot_are_told(plugin: Any) -> None:
+    """What `make lerobot` compares with the real one, these tests rely on."""
+    stubs = described()
+    assert differences(stubs, stubs) == []
+    real = copy.deepcopy(stubs)
+    robot = real["lerobot.robots.Robot"]["members"]
+    robot["reset"] = {"parameters": {}, "abstract": True}
+    del robot["calibrate"]
+    robot["connect"]["parameters"]["port"] = ["POSITIONAL_OR_KEYWORD", False]
+    robot["send_action"]["parameters"]["wait"] = ["KEYWORD_ONLY", True]
+    real["lerobot.robots.make_robot_from_config"] = None
+    places = [each.partition(": ")[0] for each in differences(stubs, real)]
+    assert places == [
+        "lerobot.robots.Robot.calibrate",
+        "lerobot.robots.Robot.reset",
+        "lerobot.robots.Robot.connect",
+        "lerobot.robots.make_robot_from_config",
+    ]

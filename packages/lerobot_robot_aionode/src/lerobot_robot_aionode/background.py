@@ -6,20 +6,20 @@ import asyncio
 import contextlib
 import threading
 from abc import ABC, abstractmethod
-from concurrent.futures import Future
-from typing import TYPE_CHECKING, TypeVar
+from concurrent.futures import Future, wait
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import Context, Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Coroutine
 
 __all__ = ["Background"]
 
 T = TypeVar("T")
 
-ANSWER_S = 5.0
-"""How long its loop may take for what LeRobot's thread asks."""
+LOOK_S = 0.5
+"""How often a thread that waits for an answer looks whether the node has ended."""
 
 
 class Background(ABC):
@@ -62,27 +62,34 @@ class Background(ABC):
                 self._loop.call_soon_threadsafe(self._task.cancel)
         self._thread.join()
 
-    def ask(self, function: Callable[[], T]) -> T:
-        """Return what a function returns in its loop.
+    def ask(self, question: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Return what a coroutine function returns in its loop.
 
         Raises:
-            ConnectionError: it has ended.
+            ConnectionError: the node has ended.
             Exception: what the function raised.
         """
-        if not self.is_running or self._loop is None:
+        answer = self._asked(question)
+        while answer is not None and self.is_running:
+            if wait([answer], LOOK_S).done:
+                break
+        if answer is None or not answer.done() or answer.cancelled():
+            self._thread.join()  # then it is known why
             raise ConnectionError(
                 f"{self._name}: its node has ended; connect again"
             ) from self._failure
-        answer: Future[T] = Future()
+        return answer.result()
 
-        def call() -> None:
-            try:
-                answer.set_result(function())
-            except Exception as error:  # noqa: BLE001  # `result` raises it
-                answer.set_exception(error)
-
-        self._loop.call_soon_threadsafe(call)
-        return answer.result(ANSWER_S)
+    def _asked(self, question: Callable[[], Coroutine[Any, Any, T]]) -> Future[T] | None:
+        """Return the future of an answer; None if the loop has ended."""
+        if not self.is_running or self._loop is None:
+            return None
+        asked = question()
+        try:
+            return asyncio.run_coroutine_threadsafe(asked, self._loop)
+        except RuntimeError:  # it has ended meanwhile
+            asked.close()
+            return None
 
     def _run(self) -> None:
         try:

@@ -11,12 +11,14 @@ if TYPE_CHECKING:
 
     from aionode.learn import Action, Contract, Observation
 
-__all__ = ["action_keys", "flat", "observation_keys"]
+__all__ = ["ACTION", "action_keys", "flat", "observation_keys"]
 
 SUFFIXES = (".pos", ".vel")
 """How the keys of numbers end: `lerobot-rollout` leaves out all others."""
 
+STATE = "observation.state"
 IMAGES = "observation.images."
+ACTION = "action"
 CHANNELS = 3
 
 
@@ -30,8 +32,11 @@ def action_keys(contract: Contract) -> list[str]:
     """Return the key of each number of the actions, in the order of the contract.
 
     Raises:
-        ValueError: two have the same key.
+        ValueError: two have the same key, or a feature has another name than LeRobot gives it.
     """
+    for entry in contract.actions:
+        if entry.feature != ACTION:
+            raise ValueError(misnamed(entry, ACTION))
     return unique(key for entry in contract.actions for key in number_keys(entry))
 
 
@@ -39,10 +44,15 @@ def observation_keys(contract: Contract) -> dict[str, Any]:
     """Return what each key of an observation has: a float, or the shape of a picture.
 
     Raises:
-        ValueError: two have the same key, or a feature is a depth picture.
+        ValueError: two have the same key, a feature has another name than LeRobot gives it, or is a
+            depth picture.
     """
     keys: list[tuple[str, Any]] = []
     for entry in contract.observations:
+        if entry.image is None and entry.feature != STATE:
+            raise ValueError(misnamed(entry, STATE))
+        if entry.image and not entry.feature.startswith(IMAGES):
+            raise ValueError(misnamed(entry, f"{IMAGES}NAME"))
         if entry.image == "depth":
             raise ValueError(
                 f"{entry.topic}: depth pictures are not passed on to LeRobot's loops; leave the "
@@ -69,6 +79,14 @@ def flat(contract: Contract, values: Mapping[str, Any]) -> dict[str, Any]:
         else:
             found[name.removeprefix(IMAGES)] = np.array(value)  # the message's own may not change
     return found
+
+
+def misnamed(entry: Observation | Action, name: str) -> str:
+    """Return what is wrong with a feature that LeRobot's loops would rename without a word."""
+    return (
+        f"{entry.feature}: LeRobot's loops call it {name}, so that a policy trained on an export "
+        "would not find it; name the feature so in the contract, and export again"
+    )
 
 
 def unique(keys: Iterable[str]) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from lerobot.robots import Robot
@@ -14,7 +14,8 @@ from aionode.errors import LeaseExpiredError
 from aionode.learn import Contract
 from lerobot_robot_aionode.background import Background
 from lerobot_robot_aionode.config import AionodeRobotConfig
-from lerobot_robot_aionode.keys import action_keys, flat, observation_keys
+from lerobot_robot_aionode.keys import ACTION, action_keys, flat, observation_keys
+from lerobot_robot_aionode.one_action import let_one_action_drive
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from aionode import Node
-    from aionode.learn import Observations
+    from aionode.learn import Action, Observations
 
 __all__ = ["AionodeRobot"]
 
@@ -42,18 +43,18 @@ class Driver(Background):
         self._has_next = asyncio.Event()
 
     def observe(self) -> dict[str, Any]:
-        """Return the newest observation."""
+        """Return the next observation that LeRobot has not had."""
+        return flat(self._contract, self.ask(self._observed))
 
-        def newest() -> dict[str, Any]:
-            assert self._observations is not None  # noqa: S101  # it is ready
-            return flat(self._contract, self._observations.newest().values)
-
-        return self.ask(newest)
+    async def _observed(self) -> dict[str, Any]:
+        assert self._observations is not None  # noqa: S101  # it is ready
+        async with contextlib.aclosing(self._observations.at()) as observations:
+            return (await anext(observations)).values
 
     def send(self, action: npt.NDArray[np.float64]) -> None:
         """Send an action."""
 
-        def put() -> None:
+        async def put() -> None:
             self._next = action
             self._has_next.set()
 
@@ -62,13 +63,14 @@ class Driver(Background):
     async def live(self, node: Node, ready: Callable[[], None]) -> None:
         """Observe and send."""
         async with self._contract.observe(node) as self._observations:
-            async for _ in self._observations.at():
-                break
+            await self._observed()
             ready()
             while True:
                 await self._has_next.wait()
-                with contextlib.suppress(LeaseExpiredError):
+                try:
                     await self._drive(node)
+                except LeaseExpiredError as error:
+                    node.get_logger().info(f"the next action moves the robot again: {error}")
 
     async def _drive(self, node: Node) -> None:
         async with self._contract.act(node) as actor:
@@ -118,6 +120,8 @@ class AionodeRobot(Robot):
         """
         if self.is_connected:
             raise DeviceAlreadyConnectedError(f"{self} is already connected.")
+        if len(action_keys(self.contract)) == 1:
+            let_one_action_drive()
         driver = Driver(self.contract)
         driver.start()
         self._driver = driver
@@ -153,9 +157,8 @@ class AionodeRobot(Robot):
         driver = self._connected()
         keys = action_keys(self.contract)
         values = np.array([float(action[key]) for key in keys])
-        ends = np.cumsum([entry.shape[0] for entry in self.contract.actions])[:-1]
-        parts = zip(self.contract.actions, np.split(values, ends), strict=True)
-        inside = np.concatenate([entry.clamped(part)[0] for entry, part in parts])
+        parts = self.contract.split(ACTION, values)
+        inside = np.concatenate([cast("Action", entry).clamped(part)[0] for entry, part in parts])
         driver.send(inside)
         return dict(zip(keys, inside.tolist(), strict=True))
 

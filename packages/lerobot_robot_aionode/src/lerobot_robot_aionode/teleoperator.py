@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = ["AionodeTeleoperator"]
 
+START_S = 5.0
+"""How long the leader may take to be heard at first."""
+
 
 class Listener(Background):
     """Remembers the newest command for each topic of a contract.
@@ -41,43 +45,54 @@ class Listener(Background):
         self._topics = {
             each.topic: topics.get(each.topic, f"/leader{each.topic}") for each in contract.actions
         }
-        self._limits_ns = {
-            each.topic: round(contract.max_age(each) * 1e9) for each in contract.actions
-        }
         self._actions = contract.actions
         self._newest: dict[str, tuple[int, Any]] = {}
+        self._heard = asyncio.Event()
         self._now_ns: Callable[[], int] = int
 
     async def live(self, node: Node, ready: Callable[[], None]) -> None:
-        """Listen."""
+        """Listen; it is ready once there is something to hold, wherever the stop is to hold."""
         self._now_ns = node.get_clock().now_ns
         for action in {each.topic: each for each in self._actions}.values():
             take = partial(self._take, action.topic)
             topic = self._topics[action.topic]
             node.create_subscription(action.message_type, topic, take, qos_profile_sensor_data)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(START_S):
+                while self._silent():
+                    self._heard.clear()
+                    await self._heard.wait()
+        if silent := self._silent():
+            raise StaleError(dict.fromkeys(silent), {})
         ready()
         await asyncio.Event().wait()
 
+    def _silent(self) -> list[str]:
+        """Return the topics without which there would be nothing to send."""
+        return [
+            self._topics[each.topic]
+            for each in self._actions
+            if each.topic not in self._newest and each.stop_message() is None
+        ]
+
     def _take(self, topic: str, message: Any) -> None:
         self._newest[topic] = (self._now_ns(), message)
+        self._heard.set()
 
     def values(self) -> npt.NDArray[Any]:
-        """Return the numbers of all commands; without a new one, those of what stops the robot.
+        """Return the numbers of all commands, as the robot gets them."""
 
-        Raises:
-            StaleError: nothing was heard of a topic that holds its last command.
-        """
-        return self.ask(lambda: np.concatenate([self._of(each) for each in self._actions]))
+        async def values() -> npt.NDArray[Any]:
+            return np.concatenate([self._of(each) for each in self._actions])
+
+        return self.ask(values)
 
     def _of(self, action: Action) -> npt.NDArray[Any]:
         heard_ns, command = self._newest.get(action.topic, (0, None))
-        limit_ns = self._limits_ns[action.topic]
-        if command is None or self._now_ns() - heard_ns > limit_ns:
+        if command is None or self._now_ns() - heard_ns > action.lease_sec * 1e9:
             command = action.stop_message(command)
-        if command is None:
-            topic = self._topics[action.topic]
-            raise StaleError({topic: None}, {topic: limit_ns / 1e9})
-        return action.value(command)
+        inside, _ = action.clamped(action.value(command))  # LeRobot records what comes from here
+        return inside
 
 
 class AionodeTeleoperator(Teleoperator):
@@ -108,10 +123,11 @@ class AionodeTeleoperator(Teleoperator):
         return self._listener is not None and self._listener.is_running
 
     def connect(self, calibrate: bool = True) -> None:  # noqa: ARG002  # as LeRobot has it
-        """Start a node.
+        """Start a node, and wait for the leader's first command if the stop is to hold it.
 
         Raises:
             DeviceAlreadyConnectedError: it is connected.
+            StaleError: the leader was not heard within 5 s.
         """
         if self.is_connected:
             raise DeviceAlreadyConnectedError(f"{self} is already connected.")
@@ -131,11 +147,14 @@ class AionodeTeleoperator(Teleoperator):
         """Do nothing."""
 
     def get_action(self) -> dict[str, Any]:
-        """Return the newest command; without a new one, what stops the robot.
+        """Return the newest command; without a new one for `lease_sec`, what stops the robot.
+
+        It is within the limits of the contract: LeRobot records it as it is.
 
         Raises:
             DeviceNotConnectedError: it is not connected.
-            StaleError: there is nothing to hold yet.
+            ContractError: a number of the command is not finite.
+            MessageError: the command lacks a number (a ValueError).
         """
         values = self._connected().values()
         return dict(zip(action_keys(self.contract), values.tolist(), strict=True))

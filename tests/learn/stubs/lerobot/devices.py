@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -61,9 +62,19 @@ def make_device_from_device_class(config: Choices) -> Any:
 class Device:
     """What both begin and end with."""
 
+    id: str | None
+
+    def __str__(self) -> str:
+        return f"{self.id} {self.__class__.__name__}"
+
+    def __del__(self) -> None:
+        with contextlib.suppress(Exception):
+            if self.is_connected:  # type: ignore[attr-defined]  # abstract in LeRobot
+                self.disconnect()  # type: ignore[attr-defined]  # the same
+
     def __enter__(self) -> Self:
         self.connect()  # type: ignore[attr-defined]  # abstract in LeRobot
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, exc_type: object, exc_value: object, traceback: object) -> None:
         self.disconnect()  # type: ignore[attr-defined]  # abstract in LeRobot

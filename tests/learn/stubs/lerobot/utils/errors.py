@@ -6,6 +6,14 @@ __all__ = ["DeviceAlreadyConnectedError", "DeviceNotConnectedError"]
 class DeviceNotConnectedError(ConnectionError):
     """It is not connected."""
 
+    def __init__(self, message: str = "not connected") -> None:
+        self.message = message
+        super().__init__(message)
+
 
 class DeviceAlreadyConnectedError(ConnectionError):
     """It is connected already."""
+
+    def __init__(self, message: str = "already connected") -> None:
+        self.message = message
+        super().__init__(message)

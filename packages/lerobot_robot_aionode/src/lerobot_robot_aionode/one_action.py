@@ -1,0 +1,33 @@
+"""A robot with a single action in `lerobot-rollout`."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["let_one_action_drive"]
+
+PLACE = "lerobot.rollout.inference.sync"
+
+
+def let_one_action_drive() -> None:
+    """Let the rollout that runs in this process, if one does, drive a robot of one action.
+
+    LeRobot 0.6 takes the dimension of the batch off an action twice. That does nothing to several
+    actions, but leaves no dimension of a single one, which is then indexed: an IndexError. The
+    function that does it the second time is given the dimension back.
+    """
+    rollout = sys.modules.get(PLACE)
+    given = getattr(rollout, "make_robot_action", None)
+    if rollout is None or given is None or hasattr(given, "__wrapped__"):
+        return
+
+    @functools.wraps(given)
+    def make_robot_action(action: Any, features: Mapping[str, Any]) -> Any:
+        return given(action.reshape(1, -1), features)
+
+    vars(rollout)["make_robot_action"] = make_robot_action
