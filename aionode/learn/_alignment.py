@@ -8,7 +8,7 @@ old for one drops it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -18,13 +18,16 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from aionode.learn.contract import Action, Contract, Observation
 
-__all__ = ["LONGEST_GAP", "Aligned", "Series", "aligned"]
+__all__ = ["LONGEST_GAP", "OTHER_CLOCK", "Aligned", "Series", "aligned", "in_order"]
 
 LONGEST_GAP: Final = 1.5
 """The periods from one row to the next up to which they belong to one episode."""
 
 LONGEST_SEC: Final = 2000.0
 """The longest episode in seconds: readers compare times, which are 32-bit floats, to 0.1 ms."""
+
+OTHER_CLOCK: Final = 1.0
+"""The seconds between stamp and arrival from which they are of two clocks."""
 
 ROUNDING_NS: Final = 1000
 """How much later a message may be and still count: periods are no whole nanoseconds."""
@@ -42,7 +45,9 @@ class Series:
         arrivals: When they arrived.
         values: Their numbers, one row each; without columns for pictures.
         ordinals: Their places among all messages of their topic.
-        backwards: How many were left out because their time is not after the one before.
+        is_captured: Whether the times are those in headers.
+        backwards: How many were left out because their times are out of order.
+        unstamped: How many have no time in their header, though others of the topic may.
         invalid: How many could not be read.
         problem: What was wrong with the first of these.
     """
@@ -51,9 +56,31 @@ class Series:
     arrivals: Ints
     values: Floats
     ordinals: Ints
+    is_captured: bool = False
     backwards: int = 0
+    unstamped: int = 0
     invalid: int = 0
     problem: str = ""
+
+    @property
+    def offsets(self) -> Floats:
+        """How long after its time each message arrived, in seconds."""
+        return (self.arrivals.astype(np.float64) - self.times) / 1e9
+
+    def only(self, is_kept: npt.NDArray[np.bool_]) -> Series:
+        """Return some of the messages, with the same counts of those that were left out."""
+        return replace(
+            self,
+            times=self.times[is_kept],
+            arrivals=self.arrivals[is_kept],
+            values=self.values[is_kept],
+            ordinals=self.ordinals[is_kept],
+        )
+
+    def without(self, ordinals: list[int], problem: str) -> Series:
+        """Return the messages without some that turned out to be unreadable."""
+        found = self.only(~np.isin(self.ordinals, ordinals))
+        return replace(found, invalid=self.invalid + len(ordinals), problem=self.problem or problem)
 
 
 @dataclass(slots=True)
@@ -123,6 +150,27 @@ def aligned(contract: Contract, series: Sequence[Series]) -> Aligned:
         [int(each.sum()) for each in stale],
         (steps[is_gap] / 1e9).tolist(),
     )
+
+
+def in_order(series: Series) -> Series:
+    """Return the messages whose times are in the order of their arrivals.
+
+    A time that contradicts others is false if it is far from its arrival, as no other one of the
+    topic is: so one time in the future does not cost all messages after it. Of the rest, a message
+    is left out that is not after the one before.
+    """
+    times = series.times
+    if (np.diff(times) > 0).all():
+        return series
+    first, last = np.iinfo(np.int64).min, np.iinfo(np.int64).max
+    latest_before = np.append(first, np.maximum.accumulate(times)[:-1])
+    earliest_after = np.append(np.minimum.accumulate(times[::-1])[::-1][1:], last)
+    is_contradicted = (times <= latest_before) | (times >= earliest_after)
+    is_far = np.abs(series.offsets - np.median(series.offsets)) > OTHER_CLOCK
+    found = series.only(~(is_contradicted & is_far))
+    is_after = np.append(True, found.times[1:] > np.maximum.accumulate(found.times)[:-1])
+    found = found.only(is_after[: len(found.times)])
+    return replace(found, backwards=len(times) - len(found.times))
 
 
 def max_age_of(contract: Contract, entry: Observation | Action) -> float:

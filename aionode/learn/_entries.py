@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import lru_cache
 from typing import Any, Final, Literal, TypeAlias
 
 import msgspec
@@ -113,6 +114,11 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 raise ValueError(f"fields: {path!r}: {error}") from None
 
     @property
+    def has_floats(self) -> bool:
+        """Whether all numbers are floating-point numbers."""
+        return are_floats(self.message_type, self.paths)
+
+    @property
     def message_type(self) -> Any:
         """The message class."""
         try:
@@ -152,9 +158,14 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Return the numbers of a message as float32.
 
         Raises:
-            MessageError: the message lacks one of them (a ValueError).
+            MessageError: the message lacks one of them, or one is not finite (a ValueError).
         """
-        return np.array([number_at(message, path) for path in self.paths], np.float32)
+        with np.errstate(over="ignore"):  # what float32 cannot hold is not finite
+            found = np.array([number_at(message, path) for path in self.paths], np.float32)
+        if not np.isfinite(found).all():
+            place = int(np.flatnonzero(~np.isfinite(found))[0])
+            raise MessageError(f"{self.type}.{self.paths[place]}", f"{found[place]}, not finite")
+        return found
 
     def time_of(self, message: Any, received: int) -> int:
         """Return the time of a message in nanoseconds, by its header or its arrival.
@@ -201,7 +212,9 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
     @property
     def is_interpolated(self) -> bool:
         """Whether a value between two messages is computed from both."""
-        return self.image is None and self.resample != "hold"
+        return self.resample == "interpolate" or (
+            not self.resample and self.image is None and self.has_floats
+        )
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -227,7 +240,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         pixels = pixels_of(message, self.image)
         if pixels.shape != self.shape:
             raise MessageError(
-                f"{self.topic}: picture",
+                self.type,
                 f"{pixels.shape[1]} by {pixels.shape[0]} pixels; the contract has {self.width} by "
                 f"{self.height}",
             )
@@ -341,6 +354,12 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if stamp is not None and self.has_header:
             message.header.stamp = stamp
         return message
+
+
+@lru_cache(1000)
+def are_floats(cls: Any, paths: tuple[str, ...]) -> bool:
+    """Return whether all numbers at the paths of a message class are floating-point numbers."""
+    return all(check_path(cls, path).kind.startswith("float") for path in paths)
 
 
 def pixels_of(message: Any, kind: str) -> Array:

@@ -95,22 +95,17 @@ def run(job: Job, tell: Callable[[int], None]) -> dict[str, Any]:
         if not task:
             raise DatasetError(job.path, "it has no task", "give one with --task")
         series, problems = scanned(opened, contract, tell)
-        rows = aligned(contract, series)
+        rows, cameras = encoded(opened, job, contract, series, tell)
         if rows.gaps and contract.gap == "refuse":
-            longest = max(rows.gaps)
             problems.append(
                 f"refused: {counted(len(rows.gaps), 'gap')} between rows, the longest of "
-                f"{longest:.3f} s"
+                f"{max(rows.gaps):.3f} s"
             )
-            rows.starts = []
-        cameras = cameras_of(contract, rows, series, job)
-        fill(opened, cameras, tell, problems)
         episodes = [
             episode_of(contract, rows, cameras, number, folder) | {"task": task}
             for number in range(len(rows.starts))
         ]
-        unreadable = {each.entry.topic: each.unreadable for each in cameras if each.unreadable}
-        report = report_of(opened, contract, series, rows, unreadable, problems)
+        report = report_of(opened, contract, series, rows, problems)
     part = {"episodes": episodes, "report": report}
     written = folder / f"{PART}.new"
     written.write_text(json.dumps(part))
@@ -121,6 +116,31 @@ def run(job: Job, tell: Callable[[int], None]) -> dict[str, Any]:
 # Pictures
 
 
+def encoded(
+    opened: Bag,
+    job: Job,
+    contract: Contract,
+    series: list[Series],
+    tell: Callable[[int], None],
+) -> tuple[Aligned, list[Camera]]:
+    """Return the rows of a bag, after their pictures were written.
+
+    Whether a picture can be read is known once it is encoded. If one cannot, the rows are made
+    again without it: no other picture stands for it, whose age would be another one.
+    """
+    while True:
+        rows = aligned(contract, series)
+        if rows.gaps and contract.gap == "refuse":
+            rows.starts = []
+        cameras = cameras_of(contract, rows, series, job)
+        fill(opened, cameras, tell)
+        if not any(each.unreadable for each in cameras):
+            return rows, cameras
+        for each in cameras:
+            position = contract.entries.index(each.entry)
+            series[position] = series[position].without(each.unreadable, each.problem)
+
+
 class Camera:
     """The pictures of one feature, on their way into the videos of the episodes.
 
@@ -129,7 +149,8 @@ class Camera:
         wanted: The ordinal of the message of each row that is in an episode, with its episode.
         files: The video of each episode.
         stats: The statistics of each.
-        unreadable: How many pictures could not be read: the one before stands for them.
+        unreadable: The ordinals of pictures that could not be read.
+        problem: What was wrong with the first of these.
     """
 
     def __init__(self, entry: Observation, wanted: list[tuple[int, int]], job: Job) -> None:
@@ -137,7 +158,8 @@ class Camera:
         self.wanted = deque(wanted)
         self.files: list[Path] = []
         self.stats: list[PixelStats] = []
-        self.unreadable = 0
+        self.unreadable: list[int] = []
+        self.problem = ""
         self.job = job
         self.queue: queue.Queue[tuple[int, Record] | None] = queue.Queue(WAITING)
         self.count = 0
@@ -165,15 +187,17 @@ class Camera:
 
     def encode(self) -> None:
         """Write the videos, in a thread: encoders and decoders let go of the interpreter."""
-        last: Array = np.zeros(self.entry.shape, np.float32 if self.is_depth else np.uint8)
         with ExitStack() as stack:
             writer: VideoWriter | None = None
             while (item := self.queue.get()) is not None:
                 ordinal, record = item
                 try:
-                    last = self.entry.value(record.message)
-                except UNREADABLE:
-                    self.unreadable += 1
+                    pixels = self.entry.value(record.message)
+                except UNREADABLE as error:
+                    self.unreadable.append(ordinal)
+                    self.problem = self.problem or str(error)
+                if self.unreadable:
+                    continue  # the rows are made again
                 frame = None
                 while self.wanted and self.wanted[0][0] == ordinal:
                     _, episode = self.wanted.popleft()
@@ -181,9 +205,9 @@ class Camera:
                         stack.close()
                         writer = stack.enter_context(self.writer())
                         frame = None
-                    frame = frame or writer.converted(last)
+                    frame = frame or writer.converted(pixels)
                     writer.add(frame)
-                    self.stats[-1].add(last)
+                    self.stats[-1].add(pixels)
 
     def writer(self) -> VideoWriter:
         """Return the writer of the next episode."""
@@ -216,9 +240,7 @@ def cameras_of(contract: Contract, rows: Aligned, series: list[Series], job: Job
     return found
 
 
-def fill(
-    opened: Bag, cameras: list[Camera], tell: Callable[[int], None], problems: list[str]
-) -> None:
+def fill(opened: Bag, cameras: list[Camera], tell: Callable[[int], None]) -> None:
     """Read the pictures once, and encode those of each camera in a thread of its own."""
     wanted = [each for each in cameras if each.next]
     if not wanted:
@@ -229,7 +251,7 @@ def fill(
         for each, future in encoding:
             by_topic.setdefault(full_name(each.entry.topic), []).append((each, future))
         try:
-            for record in records_of(opened, set(by_topic), problems):
+            for record in records_of(opened, set(by_topic), []):
                 tell(1)
                 for each, future in by_topic[record.topic]:
                     each.passes(record, future)

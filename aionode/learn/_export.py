@@ -111,8 +111,7 @@ def export(
     if (place / INFO).exists():
         raise DatasetError(str(out), "it is there already", "give another name, or remove it")
     paths = [path for each in bags for path in bags_in(Path(each))]
-    for path in paths:
-        repair(path)
+    removed = {str(path): repair(path) for path in paths}
     wanted = [path for path in paths if failures or not failed(path)]
     if not wanted:
         left_out = f"{counted(len(paths), 'episode')}, and only failures"
@@ -132,7 +131,10 @@ def export(
         for job, part in zip(planned, parts, strict=True)
         for each in part["episodes"]
     ]
-    reports = [part["report"] for part in parts]
+    reports = [
+        part["report"] | {"removed_bytes": removed[job.path]}
+        for job, part in zip(planned, parts, strict=True)
+    ]
     bounds = limits or Limits()
     problems = {
         report["path"]: wrong for report in reports if (wrong := over(report, bounds, found.fps))
@@ -166,8 +168,11 @@ def is_bag(folder: Path) -> bool:
     )
 
 
-def repair(path: Path) -> None:
+def repair(path: Path) -> int:
     """Close the bag of a recorder that was killed; all but the last second is there.
+
+    Returns:
+        The bytes that could not be saved.
 
     Raises:
         BagError: it is damaged otherwise, or is being recorded (a ValueError).
@@ -175,7 +180,8 @@ def repair(path: Path) -> None:
     try:
         bag.open(path).close()
     except BagError:
-        bag.check(path)
+        return sum(each.removed_bytes for each in bag.check(path))
+    return 0
 
 
 def failed(path: Path) -> bool:

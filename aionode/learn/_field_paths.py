@@ -18,8 +18,12 @@ NAME_FIELDS: Final = ("name", "joint_names", "names")
 """The fields that list the names of the elements of the other arrays."""
 
 
-def check_path(cls: Any, path: str) -> None:
-    """Raise ValueError if no number of a message class can be at a path."""
+def check_path(cls: Any, path: str) -> FieldType:
+    """Return the type of the numbers at a path of a message class.
+
+    Raises:
+        ValueError: there can be none.
+    """
     here: type[Message] | None = cls
     array: FieldType | None = None
     for part in path.split("."):
@@ -44,6 +48,7 @@ def check_path(cls: Any, path: str) -> None:
         )
     if type_.kind not in DTYPES:
         raise ValueError(f"it is {type_}, and no number")
+    return type_
 
 
 def has_names(cls: Any) -> bool:
@@ -90,6 +95,8 @@ def index_of(message: Message, part: str, length: int, path: str) -> int:
     names: list[str] = getattr(message, field) if field else []
     if part not in names:
         lacks(message, path, f"the names are {', '.join(names[:20]) or 'none'}")
+    if names.count(part) > 1:
+        lacks(message, path, f"{part} is there {names.count(part)} times among the names")
     index = names.index(part)
     if index >= length:
         lacks(message, path, f"{length} elements for {len(names)} names")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from aionode.errors import escaped
+from aionode.learn._alignment import OTHER_CLOCK
 from aionode.learn._metadata import OUTCOME_KEY
 from aionode.learn._scan import full_name
 
@@ -28,9 +29,6 @@ __all__ = [
     "topic_text",
     "trouble_of",
 ]
-
-OTHER_CLOCK: Final = 1.0
-"""The seconds between stamp and arrival from which they are of two clocks."""
 
 CLEAR: Final = 0.8
 """The correlation from which a lag is certain enough to be told."""
@@ -57,7 +55,6 @@ def report_of(
     contract: Contract,
     series: list[Series],
     rows: Aligned,
-    unreadable: dict[str, int],
     problems: list[str],
 ) -> dict[str, Any]:
     """Return the numbers of a report."""
@@ -65,23 +62,24 @@ def report_of(
     steps = np.diff(rows.times)
     inside = np.delete(steps, [start - 1 for start in rows.starts if start])
     lost = {name: sum(each) for name, each in (opened.losses or {}).items()}
+    topics = [
+        topic_of(contract, entry, each, rows, position)
+        | {
+            "lost": lost.get(full_name(entry.topic), 0),
+            "gone": opened.missing.get(full_name(entry.topic), 0),
+        }
+        for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
+    ]
+    main = topics[contract.entries.index(contract.main)]
     return {
         "path": str(opened.path),
         "episodes": len(rows.starts),
         "rows": kept,
         "references": rows.references,
         "missing": missing(rows, inside) if kept else 0,
-        "rate_hz": 1e9 / float(inside.mean()) if len(inside) else 0.0,
+        "rate_hz": 1e9 / float(inside.mean()) if len(inside) else main["rate_hz"],
         "gaps_sec": rows.gaps,
-        "topics": [
-            topic_of(contract, entry, each, rows, position)
-            | {
-                "unreadable": unreadable.get(entry.topic, 0),
-                "lost": lost.get(full_name(entry.topic), 0),
-                "gone": opened.missing.get(full_name(entry.topic), 0),
-            }
-            for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
-        ],
+        "topics": topics,
         "lag_sec": lags(contract, rows) if kept else {},
         "outcome": opened.custom_data.get(OUTCOME_KEY, ""),
         "problems": problems,
@@ -101,7 +99,7 @@ def topic_of(
 ) -> dict[str, Any]:
     """Return the numbers of one entry of the contract."""
     steps = np.diff(series.times) / 1e9
-    offsets = (series.arrivals - series.times) / 1e9
+    offsets = series.offsets
     chosen = rows.chosen[position]
     used = len(np.unique(chosen))
     return {
@@ -111,13 +109,16 @@ def topic_of(
         "is_main": entry is contract.main,
         "messages": len(series.times),
         "rate_hz": float(1 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 0.0,
-        "offset_sec": spread(offsets) if entry.is_captured else None,
+        "offset_sec": spread(offsets) if series.is_captured else None,
+        "ahead": int((offsets < -contract.max_age(entry)).sum()),
+        "ahead_sec": float(max(-offsets.min(initial=0), 0)),
         "age_sec": spread(rows.ages[position]),
         "max_age_sec": contract.max_age(entry),
         "stale": rows.stale[position],
         "repeated": len(chosen) - used,
         "unused": int(chosen[-1] - chosen[0] + 1 - used) if len(chosen) else 0,
         "backwards": series.backwards,
+        "unstamped": series.unstamped,
         "invalid": series.invalid,
         "problem": series.problem,
     }
@@ -199,9 +200,8 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
         found += [
             f"{topic['topic']}: {counted(topic[kind], 'message')} {words}"
             for kind, words in (
-                ("unreadable", "not readable: the picture before stands for it"),
                 ("invalid", f"not as in the contract: {topic['problem']}"),
-                ("backwards", "with a time that is not after the one before"),
+                ("backwards", "with a time out of order, left out"),
                 ("lost", "lost by the recorder"),
                 ("gone", "recorded, and no longer in the bag: its file was cut, or is missing"),
             )
@@ -209,13 +209,40 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
         ]
         if is_short and topic["messages"] and topic["stale"] > limits.dropped * report["rows"]:
             found.append(stale_text(topic))
-        offset = topic["offset_sec"]
-        if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
-            found.append(
-                f"{topic['topic']}: stamped {offset['p50']:.1f} s before arrival, by another "
-                "clock; stamp: receive fits"
-            )
+        found += stamp_problems(topic)
     return found
+
+
+def stamp_problems(topic: dict[str, Any]) -> list[str]:
+    """Return what is wrong with the times in the headers of a topic, with what to do."""
+    name, found = topic["topic"], []
+    offset = topic["offset_sec"]
+    if topic["unstamped"]:
+        remedy = (
+            "their arrivals are taken, as with stamp: receive"
+            if offset is None
+            else "they are left out"
+        )
+        found.append(
+            f"{name}: {counted(topic['unstamped'], 'message')} without a time in the header; "
+            f"{remedy}"
+        )
+    if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
+        found.append(
+            f"{name}: stamped {shifted(offset['p50'])}, by another clock; stamp: receive fits"
+        )
+    elif topic["ahead"]:
+        found.append(
+            f"{name}: {counted(topic['ahead'], 'message')} stamped up to "
+            f"{shifted(-topic['ahead_sec'])}, by a clock that is ahead; stamp: receive fits"
+        )
+    return found
+
+
+def shifted(sec: float) -> str:
+    """Return how long before its arrival a message was stamped, or after it."""
+    amount = f"{abs(sec):.1f} s" if abs(sec) > OTHER_CLOCK else f"{abs(sec) * 1e3:.1f} ms"
+    return f"{amount} {'before' if sec >= 0 else 'after'} arrival"
 
 
 def counted(count: int, what: str) -> str:
@@ -240,12 +267,7 @@ def trouble_of(
         found.append(f"{name}: {counted(topic['invalid'], 'message')}: {topic['problem']}")
     if topic["backwards"]:
         found.append(f"{name}: times that go back; do two nodes publish it?")
-    offset = topic["offset_sec"]
-    if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
-        found.append(
-            f"{name}: stamped {offset['p50']:.1f} s before arrival, by another clock; "
-            "stamp: receive fits"
-        )
+    found += stamp_problems(topic)
     if topic["is_main"]:
         every = max(round(topic["rate_hz"] / contract.fps), 1)
         if topic["rate_hz"] and abs(topic["rate_hz"] / every / contract.fps - 1) > Limits().rate:
@@ -282,6 +304,8 @@ def text_of(report: dict[str, Any], limits: Limits, fps: int) -> str:
     )
     lines = [head]
     lines += [f"  {topic_text(topic, report['rows'])}" for topic in report["topics"]]
+    if report["removed_bytes"]:
+        lines.append(f"  repaired: {counted(report['removed_bytes'], 'byte')} could not be saved")
     if report["gaps_sec"]:
         gaps = counted(len(report["gaps_sec"]), "gap")
         lines.append(f"  {gaps}, the longest of {max(report['gaps_sec']):.3f} s")

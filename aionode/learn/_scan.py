@@ -11,12 +11,13 @@ import numpy as np
 
 from aionode.bag.files.record import MOST_NS
 from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, MessageError
-from aionode.learn._alignment import Series
+from aionode.learn._alignment import Series, in_order
+from aionode.learn._field_paths import check_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from aionode.bag import Bag, Record
+    from aionode.bag import Bag, Record, TopicInfo
     from aionode.learn.contract import Action, Contract, Observation
 
 __all__ = ["UNREADABLE", "Collected", "full_name", "records_of", "scanned"]
@@ -26,6 +27,9 @@ UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
 
 STAMPS: Final = (struct.Struct(">iI"), struct.Struct("<iI"))
 """The time at the start of a message with a header, by the lowest bit of its second byte."""
+
+STAMP_PATHS: Final = ("header.stamp.sec", "header.stamp.nanosec")
+"""Where the numbers of a captured time are."""
 
 FIRST_FIELD: Final = 4
 """Where the first field of a message begins, in its bytes."""
@@ -39,12 +43,14 @@ class Collected:
     Attributes:
         entry: The entry of the contract.
         is_image: Whether its messages are pictures.
+        is_captured: Whether their time is that in their header.
+        info: The topic in the bag of the last message, which the entry can read.
         times: Their times in nanoseconds, by header or arrival.
         arrivals: When they arrived.
         ordinals: Their places among all messages of their topic.
         values: The numbers of one after the other; none of pictures.
+        unstamped: Which of them have no time in their header.
         count: How many messages there were, with those that were left out.
-        backwards: How many were left out because their time is not after the one before.
         invalid: How many could not be read.
         problem: What was wrong with the first of these.
     """
@@ -52,12 +58,14 @@ class Collected:
     def __init__(self, entry: Observation | Action) -> None:
         self.entry = entry
         self.is_image = bool(getattr(entry, "image", None))
+        self.is_captured = entry.is_captured
+        self.info: TopicInfo | None = None
         self.times = array("q")
         self.arrivals = array("q")
         self.ordinals = array("q")
         self.values = array("f")
+        self.unstamped = array("q")
         self.count = 0
-        self.backwards = 0
         self.invalid = 0
         self.problem = ""
 
@@ -65,11 +73,10 @@ class Collected:
         """Take a message of the topic."""
         ordinal, self.count = self.count, self.count + 1
         try:
-            arrival = min(record.time_ns, MOST_NS)
-            time = self.time_of(record, arrival)
-            if self.times and time <= self.times[-1]:
-                self.backwards += 1
-                return
+            if record.info is not self.info:
+                check_type(record.info, self.entry)
+                self.info = record.info
+            stamp = self.stamp_of(record) if self.is_captured else 0
             if not self.is_image:
                 self.values.frombytes(self.entry.value(record.message).tobytes())
             elif not self.times:
@@ -78,33 +85,68 @@ class Collected:
             self.invalid += 1
             self.problem = self.problem or str(error)
             return
-        self.times.append(time)
+        arrival = min(record.time_ns, MOST_NS)
+        if self.is_captured and not stamp:
+            self.unstamped.append(len(self.times))
+        self.times.append(stamp or arrival)
         self.arrivals.append(arrival)
         self.ordinals.append(ordinal)
 
-    def time_of(self, record: Record, arrival: int) -> int:
-        """Return the time of a message; that of a picture is read without the picture."""
-        if not self.entry.is_captured:
-            return arrival
+    def stamp_of(self, record: Record) -> int:
+        """Return the time in a header, 0 without one; that of a picture without the picture."""
         if not self.is_image:
-            return self.entry.time_of(record.message, arrival)
+            return self.entry.time_of(record.message, 0)
         if len(record.raw) < FIRST_FIELD + 8:
             raise MessageError(self.entry.type, f"{len(record.raw)} bytes only")
         sec, nanosec = STAMPS[record.raw[1] & 1].unpack_from(record.raw, FIRST_FIELD)
-        return int(sec) * 1_000_000_000 + int(nanosec) or arrival
+        return int(sec) * 1_000_000_000 + int(nanosec)
 
     def series(self) -> Series:
-        """Return what was taken."""
+        """Return what was taken, in the order of its times.
+
+        A message without a time in its header is left out, unless none of the topic has one: then
+        their arrivals are their times.
+        """
         columns = 0 if self.is_image else self.entry.shape[0]
-        return Series(
+        found = Series(
             np.array(self.times, np.int64),
             np.array(self.arrivals, np.int64),
             np.array(self.values, np.float64).reshape(len(self.times), columns),
             np.array(self.ordinals, np.int64),
-            self.backwards,
-            self.invalid,
-            self.problem,
+            is_captured=self.is_captured and len(self.unstamped) < len(self.times),
+            unstamped=len(self.unstamped),
+            invalid=self.invalid,
+            problem=self.problem,
         )
+        if found.is_captured and found.unstamped:
+            is_stamped = np.ones(len(self.times), np.bool_)
+            is_stamped[self.unstamped] = False
+            found = found.only(is_stamped)
+        return in_order(found)
+
+
+def check_type(info: TopicInfo, entry: Observation | Action) -> None:
+    """Raise the error for a topic, of which a bag may have several, that an entry cannot read.
+
+    Raises:
+        InterfaceNotFoundError: neither aionode nor the bag has a definition of its type.
+        MessageError: it is of another type, or its definition lacks a field (a ValueError).
+    """
+    if info.type != entry.type:
+        raise MessageError(entry.type, f"it is {info.type} in the bag")
+    cls = info.msg_type
+    if cls is entry.message_type:
+        return
+    problem = "pictures of another definition cannot be read"
+    try:
+        if not getattr(entry, "image", None):
+            for path in (*entry.paths, *STAMP_PATHS * entry.is_captured):
+                problem = path
+                check_path(cls, path)
+            return
+    except ValueError as error:
+        problem = f"{problem}: {error}"
+    raise MessageError(entry.type, f"its definition in the bag is another one: {problem}")
 
 
 def scanned(
@@ -122,11 +164,6 @@ def scanned(
     for each in collected:
         by_topic.setdefault(full_name(each.entry.topic), []).append(each)
     problems = [absence_of(opened, name) for name in by_topic if not opened.counts.get(name)]
-    problems += [
-        f"{name} is {opened.topics[name].type} in the bag, and {each[0].entry.type} in the contract"
-        for name, each in by_topic.items()
-        if name in opened.topics and opened.topics[name].type != each[0].entry.type
-    ]
     for record in records_of(opened, by_topic.keys() & opened.topics.keys(), problems):
         tell(1)
         for each in by_topic[record.topic]:

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from aionode import image
 from aionode.errors import ContractError, MessageError
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
-from aionode.learn import Contract, contract
+from aionode.learn import Contract, Observation, contract
 
 TEXT = """\
 task: pick the cube
@@ -249,3 +250,16 @@ def test_a_feature_may_come_from_several_topics(tmp_path: Path) -> None:
         ("/gripper", [3.0]),
     ]
     assert read.actions[1].stop_message().data == 0.5
+
+
+def test_numbers_that_are_no_floating_point_numbers_are_held() -> None:
+    """Between an open gripper and a closed one there is none."""
+    closed = Observation(
+        feature="observation.gripper",
+        topic="/closed",
+        type="std_msgs/msg/Bool",
+        fields=("data",),
+    )
+    assert not closed.is_interpolated
+    assert structs.replace(closed, resample="interpolate").is_interpolated
+    assert structs.replace(closed, type="std_msgs/msg/Float32").is_interpolated

@@ -165,6 +165,16 @@ def test_a_topic_that_is_too_old_for_all_rows_is_named(tmp_path: Path) -> None:
         dataset(tmp_path, bag)
 
 
+def test_what_a_repair_could_not_save_is_told(tmp_path: Path) -> None:
+    """Without metadata nothing else says that messages are missing."""
+    path = demonstration(tmp_path / "run", length_sec=6)
+    (file,) = path.glob("*.mcap")
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    (path / "metadata.yaml").unlink()
+    found = export(tmp_path / "out", [path], contract=contract(), jobs=1)
+    assert re.search(r"repaired: \d+ bytes could not be saved", found.text)
+
+
 @pytest.mark.parametrize("times", [1, 2])
 def test_a_bag_that_was_cut_after_its_recording_says_what_is_missing(
     tmp_path: Path, times: int

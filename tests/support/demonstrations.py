@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Contract
+
+Messages: TypeAlias = list[tuple[int, str, Any]]
+"""The time of arrival in nanoseconds, the topic and the message of each."""
 
 HEIGHT, WIDTH = 32, 128
 START_NS = 1_800_000_000_000_000_000
@@ -130,11 +133,12 @@ def demonstration(
     recorded_with: Contract | None = None,
     draw: Callable[[float], Any] = picture,
     wrap: Callable[[Image], Any] = lambda message: message,
+    edit: Callable[[Messages], Messages] = lambda messages: messages,
     seed: int = 0,
     **metadata: str,
 ) -> Path:
-    """Write the bag of a demonstration."""
-    messages: list[tuple[int, str, Any]] = []
+    """Write the bag of a demonstration; `edit` may change what is recorded, in its order."""
+    messages: Messages = []
 
     def add(topic: str, sec: float, late_sec: float, message: Any) -> None:
         messages.append((START_NS + round((sec + late_sec) * 1e9), topic, message))
@@ -156,9 +160,10 @@ def demonstration(
     if recorded_with is not None:
         custom["contract"] = json.dumps(recorded_with.to_dict())
     with BagWriter(path, custom_data=custom) as writer:
-        ids: dict[str, int] = {}
-        for time_ns, topic, message in sorted(messages, key=lambda each: each[0]):
-            if topic not in ids:
-                ids[topic] = writer.add_topic(topic_info(topic, type(message)))
-            writer.write(ids[topic], time_ns, cdr.encode(message))
+        ids: dict[tuple[str, type], int] = {}
+        for time_ns, topic, message in edit(sorted(messages, key=lambda each: each[0])):
+            key = topic, type(message)
+            if key not in ids:
+                ids[key] = writer.add_topic(topic_info(topic, type(message)))
+            writer.write(ids[key], time_ns, cdr.encode(message))
     return path
