@@ -191,7 +191,7 @@ class Motion(msgspec.Struct, frozen=True):
 
 def without_lease(mover: Mover) -> Mover:
     """Return a mover that no lease stops."""
-    if mover.asks == "policy":  # an actor has always one
+    if mover.asks in {"policy", "policy apart"}:  # an actor has always one
         return msgspec.structs.replace(mover, ttl_sec=60.0)
     return msgspec.structs.replace(mover, asks="publisher")
 

@@ -258,6 +258,20 @@ def policies(place: Place) -> Iterator[Motion]:
             lasts_s=seconds,
             **promised,
         )
+    for goes, stops, trouble, switches in (
+        ("is killed", "the end of its actor's block", "kill", ()),
+        ("is frozen 5 s", lease, "freeze", ("lease",)),
+    ):
+        yield case(
+            place,
+            f"{who} in a process of its own",
+            goes,
+            stops,
+            mover=mover(asks="policy apart"),
+            strike=run_into(trouble, 5.0),
+            lasts_s=5.0,
+            **{**promised, "switches": switches},
+        )
     for goes, strike, seconds in (
         ("is killed", killed, 0.0),
         ("is frozen 5 s", frozen(5.0), 5.0),

@@ -47,7 +47,7 @@ class MoverNode(Node):
         self.policy: Policy | None = None
         if mover.asks in {"goal", "goal left"}:
             self.client = self.create_action_client(Fibonacci, mover.topic)
-        elif mover.asks == "policy":
+        elif mover.asks in {"policy", "policy apart"}:
             self.policy = Policy(self, mover)
         else:
             self.publisher = self.create_publisher(Twist, mover.topic, profile(mover))
@@ -100,7 +100,7 @@ class MoverNode(Node):
                     self.publisher.publish(Twist())
             case "goal" | "goal left":
                 await self.send_goals()
-            case "policy":
+            case "policy" | "policy apart":
                 assert self.policy is not None
                 await self.policy.move()
 

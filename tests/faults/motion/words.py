@@ -13,10 +13,10 @@ import msgspec
 
 __all__ = ["Asks", "Handed", "Mover", "Program", "Way", "What", "Wheel"]
 
-Asks = Literal["lease", "publisher", "finally", "goal", "goal left", "policy"]
+Asks = Literal["lease", "publisher", "finally", "goal", "goal left", "policy", "policy apart"]
 """By what it asks for motion: a lease of a publisher, a plain publisher, one whose ``finally``
 publishes a last message, a goal that it awaits, one that it does not await, or the chunks of a
-policy."""
+policy, in a thread or in another process."""
 
 Program = Literal["run", "asyncio", "uvicorn", "page"]
 """How it runs: by `aionode.run`, `asyncio.run`, in a route of FastAPI, or as a client of a gateway.
