@@ -17,6 +17,7 @@ from aionode import (
 )
 from aionode.errors import AionodeError, CommandError
 from aionode.parameter import ParameterType
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["AnyTypeNode", "given_number"]
 
@@ -51,7 +52,7 @@ class AnyTypeNode(Node):
         self.__input: Subscription[bytes] | None = None
         self.__found: tuple[str, QoSProfile] | None = None
         self.__warned = ""
-        self.create_timer(DISCOVERY_SEC, self.discover)
+        create_wall_timer(self, DISCOVERY_SEC, self.discover)
 
     def needed(self, name: str, kind: ParameterType) -> Any:
         """Return the value of a parameter that has no default.

@@ -13,6 +13,7 @@ from aionode.interfaces.nav2_msgs.srv import ManageLifecycleNodes
 from aionode.interfaces.std_msgs.msg import Bool
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.lifecycle import LifecycleManager
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["Manager", "main"]
 
@@ -61,9 +62,9 @@ class Manager(Node):
         self.tell(self.state)
         self.create_service(ManageLifecycleNodes, "~/manage_nodes", self.manage)
         self.create_service(Trigger, "~/is_active", self.answer)
-        self.create_timer(DIAGNOSTICS_SEC, self.diagnose)
-        self.create_timer(WATCH_SEC, self.watch)
-        self.beginning: Timer = self.create_timer(0.001, self.begin)
+        create_wall_timer(self, DIAGNOSTICS_SEC, self.diagnose)
+        create_wall_timer(self, WATCH_SEC, self.watch)
+        self.beginning: Timer = create_wall_timer(self, 0.001, self.begin)
 
     def tell(self, state: str) -> None:
         """Record the common state of the nodes, and publish whether they are active."""

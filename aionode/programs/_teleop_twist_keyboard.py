@@ -15,6 +15,7 @@ from aionode.errors import CommandError, LeaseExpiredError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.programs._leased_twists import LeasedTwists
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["Keys", "Teleop", "main", "terminal"]
 
@@ -126,7 +127,7 @@ class Teleop(Node):
             self, lambda: self.keys.twist, self.on_expired, is_stamped=is_stamped, frame_id=frame_id
         )
         self.show = show
-        self.create_timer(REPEAT_SEC, self.twists.repeat)
+        create_wall_timer(self, REPEAT_SEC, self.twists.repeat)
 
     def press(self, key: str) -> None:
         """Handle a key, and publish its command at once."""

@@ -14,6 +14,7 @@ from aionode import DurabilityPolicy, Node, Publisher, QoSProfile, ReliabilityPo
 from aionode.arguments import remove_ros_args
 from aionode.errors import AionodeError, CommandError
 from aionode.interfaces import get_message
+from aionode.programs._wall_timer import create_wall_timer
 from aionode.qos import qos_profile_sensor_data
 
 __all__ = ["Transform", "add_qos", "main", "parser"]
@@ -43,7 +44,7 @@ class Transform(Node):
         self.function = self.compiled(arguments)
         self.type = get_message(arguments.output_type)
         self.output: Publisher[Any] | None = None
-        self.timer = self.create_timer(SEARCH_SEC, self.begin)
+        self.timer = create_wall_timer(self, SEARCH_SEC, self.begin)
 
     def compiled(self, arguments: argparse.Namespace) -> Callable[[Any], Any]:
         """Compile the expression to a function.

@@ -12,6 +12,7 @@ from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticSt
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import Bool
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["Source", "TwistMux", "main"]
 
@@ -85,7 +86,7 @@ class TwistMux(Node):
             self.create_subscription(kind, source.topic, self.commanding(source), 10)
         for source in self.locks:
             self.create_subscription(Bool, source.topic, self.locking(source), 10)
-        self.create_timer(DIAGNOSTICS_SEC, self.tell)
+        create_wall_timer(self, DIAGNOSTICS_SEC, self.tell)
 
     def sources(self, prefix: str) -> list[Source]:
         """Return the sources below a prefix of parameters, and log them."""

@@ -12,6 +12,7 @@ from aionode.interfaces.std_msgs.msg import Header
 from aionode.programs._camera.calibration import Calibration
 from aionode.programs._camera.republish import compressed
 from aionode.programs._camera.video import FORMATS, Frame, Video, check_device
+from aionode.programs._wall_timer import create_wall_timer, wall_clock
 
 __all__ = ["Camera"]
 
@@ -55,7 +56,7 @@ class Camera(Node):
         self.images = self.create_publisher(Image, "image_raw", qos) if self.has_raw else None
         self.small = self.create_publisher(CompressedImage, "image_raw/compressed", qos)
         self.infos = self.create_publisher(CameraInfo, "camera_info", qos)
-        self.create_timer(START_SEC, self.capture)
+        create_wall_timer(self, START_SEC, self.capture)
 
     async def capture(self) -> None:
         """Publish pictures until the node ends, waiting for a camera that is unplugged."""
@@ -67,7 +68,7 @@ class Camera(Node):
                     f"{self.device}: {error}; retrying until it can be opened",
                     throttle_duration_sec=10.0,
                 )
-                await self.get_clock().sleep(RETRY_SEC)
+                await wall_clock(self).sleep(RETRY_SEC)
 
     async def play(self) -> None:
         """Publish the pictures of a camera, or once those of a file.
@@ -77,7 +78,7 @@ class Camera(Node):
         """
         given = FORMATS[self.pixel_format]
         video = await asyncio.to_thread(Video, self.device, given, self.size, self.rate)
-        clock = self.get_clock()
+        clock = wall_clock(self)
         count = 0
         try:
             while True:

@@ -11,6 +11,7 @@ from aionode import Node, Parameter
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from aionode.programs._diagnostics.analyzers import Analyzers, Other, level_of
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["Aggregator", "main"]
 
@@ -52,7 +53,7 @@ class Aggregator(Node):
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_diagnostics, depth)
         self.publisher = self.create_publisher(DiagnosticArray, "/diagnostics_agg", 1)
         self.top = self.create_publisher(DiagnosticStatus, "/diagnostics_toplevel_state", 1)
-        self.create_timer(1.0 / rate, self.publish)
+        create_wall_timer(self, 1.0 / rate, self.publish)
         self.add_post_set_parameters_callback(self.on_parameters)
 
     def given(self) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import Joy, JoyFeedback
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.programs._joy.joystick import Device, Joystick, input_devices
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["JoyNode", "main"]
 
@@ -55,10 +56,10 @@ class JoyNode(Node):
         self.has_warned = self.has_failed = False
         self.publisher = self.create_publisher(Joy, "joy", 10)
         self.create_subscription(JoyFeedback, "joy/set_feedback", self.on_feedback, 10)
-        self.soon = self.create_timer(coalesce_ms / 1e3, self.publish_once, autostart=False)
+        self.soon = create_wall_timer(self, coalesce_ms / 1e3, self.publish_once, autostart=False)
         if rate:
-            self.create_timer(1.0 / rate, self.publish)
-        self.create_timer(SEARCH_SEC, self.search)
+            create_wall_timer(self, 1.0 / rate, self.publish)
+        create_wall_timer(self, SEARCH_SEC, self.search)
         self.search()
 
     def search(self) -> None:

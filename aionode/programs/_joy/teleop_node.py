@@ -11,6 +11,7 @@ from aionode.errors import LeaseExpiredError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import Joy
 from aionode.programs._leased_twists import TTL_SEC, LeasedTwists
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["TeleopTwistJoy", "main"]
 
@@ -44,7 +45,7 @@ class TeleopTwistJoy(Node):
         )
         self.tell()
         self.create_subscription(Joy, "joy", self.on_joy, 10)
-        self.create_timer(START_SEC, self.twists.drive)
+        create_wall_timer(self, START_SEC, self.twists.drive)
 
     def value(self, name: str) -> Any:
         """Return the value of a parameter."""

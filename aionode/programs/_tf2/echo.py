@@ -11,6 +11,7 @@ import aionode
 from aionode import Node
 from aionode.arguments import remove_ros_args
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
+from aionode.programs._wall_timer import create_wall_timer
 from aionode.tf import Buffer, TransformException, rotation_matrix
 
 __all__ = ["Echo", "main", "text_of"]
@@ -81,7 +82,7 @@ class Echo(Node):
         self.buffer = Buffer(self)
         self.has_begun = False
         self.tick()
-        self.create_timer(1.0 / rate, self.tick)
+        create_wall_timer(self, 1.0 / rate, self.tick)
 
     def tick(self) -> None:
         """Show the transform, or wait for the first one."""

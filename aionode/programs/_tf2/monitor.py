@@ -12,6 +12,7 @@ from aionode import DurabilityPolicy, Node, QoSProfile, Time
 from aionode.arguments import remove_ros_args
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.programs._tf2.echo import WAITING_SEC, show
+from aionode.programs._wall_timer import create_wall_timer
 from aionode.tf import Buffer, TransformException
 
 __all__ = ["Monitor", "main"]
@@ -56,7 +57,7 @@ class Monitor(Node):
         latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.create_subscription(TFMessage, "/tf", self.on_transforms, 100)
         self.create_subscription(TFMessage, "/tf_static", self.on_transforms, latched)
-        self.create_timer(TICK_SEC, self.tick)
+        create_wall_timer(self, TICK_SEC, self.tick)
         self.has_begun = False
 
     def now(self) -> float:

@@ -12,6 +12,7 @@ from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.interfaces.turtlesim.msg import Pose
 from aionode.programs._turtlesim.node import STEP_SEC, TOPIC_QOS, normalized
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["DrawSquare", "main"]
 
@@ -30,7 +31,7 @@ class DrawSquare(Node):
         self.steps = self.squares()
         self.reset = self.create_client(Empty, "reset")
         self.is_reset = False
-        self.create_timer(STEP_SEC, self.go_on)
+        create_wall_timer(self, STEP_SEC, self.go_on)
 
     def on_pose(self, pose: Pose) -> None:
         """Record the place of the turtle."""

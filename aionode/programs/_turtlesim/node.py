@@ -26,6 +26,7 @@ from aionode.interfaces.turtlesim.action import RotateAbsolute
 from aionode.interfaces.turtlesim.msg import Color, Pose
 from aionode.interfaces.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from aionode.programs._turtlesim.picture import METER, SIZE, Pen, Picture, png
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["TOPIC_QOS", "TurtleSim", "main"]
 
@@ -324,8 +325,8 @@ class TurtleSim(Node):
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
         )
         self.spawn("", EDGE / 2, EDGE / 2, 0.0)
-        self.create_timer(STEP_SEC, self.update)
-        self.create_timer(PICTURE_SEC, self.show)
+        create_wall_timer(self, STEP_SEC, self.update)
+        create_wall_timer(self, PICTURE_SEC, self.show)
 
     def colors(self) -> tuple[int, int, int]:
         """Return the color of the background."""
