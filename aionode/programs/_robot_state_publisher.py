@@ -91,12 +91,16 @@ class RobotStatePublisher(Node):
         self.get_logger().info("Robot initialized")
         now = self.get_clock().now().to_msg()
         for joint in self.robot.joints.values():
-            if joint.kind in ("floating", "planar"):
+            if joint.kind == "floating":
                 self.get_logger().debug(
-                    f"{joint.kind} joints are not supported; skipping {joint.name}, from "
-                    f"{joint.parent} to {joint.child}"
+                    "Floating joint is not supported; skipping segment from "
+                    f"{joint.parent} to {joint.child}."
                 )
-        fixed = [joint for joint in self.robot.joints.values() if joint.kind == "fixed"]
+            elif joint.kind == "planar":  # as kdl_parser has it
+                self.get_logger().warning(
+                    f"Converting unknown joint type of joint '{joint.name}' into a fixed joint"
+                )
+        fixed = [each for each in self.robot.joints.values() if each.kind in ("fixed", "planar")]
         self.static_broadcaster.sendTransform([self.transform(joint, 0.0, now) for joint in fixed])
 
     def transform(self, joint: Joint, position: float, stamp: Time) -> TransformStamped:
@@ -138,7 +142,9 @@ class RobotStatePublisher(Node):
         period = int(1000.0 / frequency) * 10**6 if frequency else 0
         if not self.get_parameter("ignore_timestamp").value and stamp < last + period:
             return
-        positions = dict(zip(state.name, state.position.tolist(), strict=True))
+        positions: dict[str, float] = {}
+        for name, position in zip(state.name, state.position.tolist(), strict=True):
+            positions.setdefault(name, position)  # the first counts, as in the original
         transforms = []
         for joint in self.robot.joints.values():
             position = self.robot.position(joint.name, positions) if joint.is_moved else None

@@ -298,3 +298,27 @@ def matrix_of_pose(pose: Any) -> Matrix:
     ]
     matrix[:3, 3] = x, y, z
     return matrix
+
+
+async def test_a_planar_joint_is_fixed_as_in_the_original(
+    robot: Callable[..., Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """kdl_parser makes it one: its link would otherwise be in no tree of frames."""
+    planar = ARM.replace('name="screws" type="fixed"', 'name="screws" type="planar"')
+    _, watcher = robot(robot_description=planar)
+    await settle()
+
+    assert [each.child_frame_id for each in watcher.fixed] == ["mount"]
+    assert "unknown joint type of joint 'screws' into a fixed joint" in capsys.readouterr().err
+
+
+async def test_of_two_positions_of_a_joint_the_first_counts(robot: Callable[..., Any]) -> None:
+    """As in the original, whose map keeps what it has."""
+    _, watcher = robot()
+    watcher.joints.publish(
+        JointState(header=Header(stamp=Time(sec=1)), name=["slide"] * 2, position=[0.25, 0.75])
+    )
+    await settle()
+
+    hand = next(each for each in watcher.moved if each.child_frame_id == "hand")
+    assert hand.transform.translation.y == pytest.approx(0.25)
