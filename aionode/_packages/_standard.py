@@ -78,6 +78,12 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
             "teleop_twist_joy_node",
         )
     },
+    "tf2_ros": {
+        "tf2_ros::StaticTransformBroadcasterNode": (
+            "_static_transform_publisher:StaticTransformPublisher",
+            "static_transform_publisher",
+        )
+    },
     "topic_tools": {
         f"topic_tools::{name}Node": (f"_{name.lower()}:{name}", name.lower())
         for name in ("Delay", "Demux", "Drop", "Mux", "Relay", "Throttle")

@@ -81,13 +81,15 @@ class JointStatePublisher(Node):
         super().__init__(
             "joint_state_publisher", automatically_declare_parameters_from_overrides=True
         )
-        for name, value in DEFAULTS.items():
-            if not self.has_parameter(name):
-                self.declare_parameter(name, value, ParameterDescriptor(dynamic_typing=True))
+        self.values = {name: self.given(name, value) for name, value in DEFAULTS.items()}
         self.joints: list[str] = []
         self.states: dict[str, State] = {}
         self.followers: dict[str, Mimic] = {}
         self.given_followers = self._given_followers()
+        self.zeros = {
+            name: self.number(f"zeros.{name}", parameter.value)
+            for name, parameter in self.get_parameters_by_prefix("zeros").items()
+        }
         if file is not None:
             try:
                 self.use(read_file(file).decode())
@@ -99,17 +101,30 @@ class JointStatePublisher(Node):
             )
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.create_subscription(String, "robot_description", self.on_description, latched)
-        for source in self.value("source_list"):
+        for source in self.values["source_list"]:
             self.create_subscription(JointState, source, self.on_source, 10)
         self.publisher = self.create_publisher(JointState, "joint_states", 10)
-        rate = self.value("rate")
+        rate = self.values["rate"]
         if not isinstance(rate, int | float) or not 0 < rate < math.inf:
             raise CommandError(f"rate is {rate!r}; use a number above 0")
         self.create_timer(1.0 / rate, self.publish)
 
-    def value(self, name: str) -> Any:
-        """Return the value of a parameter."""
-        return self.get_parameter(name).value
+    def given(self, name: str, default: Any) -> Any:
+        """Return the value of a parameter, which is read at the start only, as in the original.
+
+        Raises:
+            CommandError: It has another type than the default.
+        """
+        if not self.has_parameter(name):
+            is_dynamic = default == []  # nothing says of which type its elements are
+            descriptor = ParameterDescriptor(dynamic_typing=is_dynamic)
+            return self.declare_parameter(name, default, descriptor).value
+        value = self.get_parameter(name).value
+        kinds = (int, float) if type(default) in (int, float) else (type(default),)
+        if type(value) not in kinds or (default == [] and not all(type(x) is str for x in value)):
+            fits = {bool: "true or false", list: "a list of topics"}.get(type(default), "a number")
+            raise CommandError(f"{name} is {value!r}; use {fits}")
+        return value
 
     def _given_followers(self) -> dict[str, Mimic]:
         """Return the joints that follow others according to parameters.
@@ -132,10 +147,23 @@ class JointStatePublisher(Node):
             raise CommandError("All dependent_joints must at least have a parent")
         return {
             joint: Mimic(
-                given["parent"], float(given.get("factor", 1.0)), float(given.get("offset", 0.0))
+                str(given["parent"]),
+                self.number(f"dependent_joints.{joint}.factor", given.get("factor", 1.0)),
+                self.number(f"dependent_joints.{joint}.offset", given.get("offset", 0.0)),
             )
             for joint, given in parts.items()
         }
+
+    @staticmethod
+    def number(name: str, value: Any) -> float:
+        """Return the value of a parameter as a number.
+
+        Raises:
+            CommandError: It is none.
+        """
+        if type(value) not in (int, float) or not math.isfinite(value):
+            raise CommandError(f"{name} is {value!r}; use a number")
+        return float(value)
 
     def use(self, text: str) -> None:
         """Use a description.
@@ -148,7 +176,7 @@ class JointStatePublisher(Node):
         followers = {
             joint.name: joint.mimic
             for joint in moved
-            if joint.mimic is not None and self.value("use_mimic_tags")
+            if joint.mimic is not None and self.values["use_mimic_tags"]
         } | {name: given for name, given in self.given_followers.items() if name in robot.joints}
         for name in followers:
             leader(name, followers)  # refuses joints that follow each other
@@ -161,21 +189,19 @@ class JointStatePublisher(Node):
     def state(self, joint: Joint) -> State:
         """Return the initial state of a joint: at zero, or in its middle if it cannot be there."""
         least, greatest = joint.limits or (-math.pi, math.pi)
-        if self.value("use_smallest_joint_limits"):
+        if self.values["use_smallest_joint_limits"]:
             soft_least, soft_greatest = joint.soft_limits
             least = least if soft_least is None else max(least, soft_least)
             greatest = greatest if soft_greatest is None else min(greatest, soft_greatest)
         zero = (least + greatest) / 2 if least > 0 or greatest < 0 else 0.0
-        zeros = self.get_parameters_by_prefix("zeros")
-        if joint.name in zeros:
-            zero = float(zeros[joint.name].value)
+        zero = self.zeros.get(joint.name, zero)
         return State(
             least,
             greatest,
             joint.kind == "continuous",
-            zero if self.value("publish_default_positions") else None,
-            0.0 if self.value("publish_default_velocities") else None,
-            0.0 if self.value("publish_default_efforts") else None,
+            zero if self.values["publish_default_positions"] else None,
+            0.0 if self.values["publish_default_velocities"] else None,
+            0.0 if self.values["publish_default_efforts"] else None,
         )
 
     def on_description(self, msg: String) -> None:
@@ -197,7 +223,7 @@ class JointStatePublisher(Node):
         """Publish the states of all joints."""
         if not self.joints:
             return
-        delta = self.value("delta")
+        delta = self.values["delta"]
         if delta > 0:
             for state in self.states.values():
                 state.move(delta)

@@ -49,6 +49,15 @@ OLD_STYLES: Final = {
 }
 """The meaning of positional values, by their number."""
 
+DEFAULTS: Final[dict[str, float | str]] = {
+    **dict.fromkeys(("translation.x", "translation.y", "translation.z"), 0.0),
+    **dict.fromkeys(("rotation.x", "rotation.y", "rotation.z"), 0.0),
+    "rotation.w": 1.0,
+    "frame_id": "/frame",
+    "child_frame_id": "/child",
+}
+"""The parameters, which say the transform of a node in a container."""
+
 LENGTH_TOLERANCE: Final = 0.01
 """Tolerance for the squared length of a quaternion; tf2 ignores others."""
 
@@ -86,7 +95,12 @@ class Given:
             values = dict(zip(OLD_STYLES[len(others)], others, strict=True))
         elif others:
             raise ValueError("Extra unparsed arguments on command-line")
-        numbers = {name: number(name, text) for name, text in values.items() if name not in FRAMES}
+        dashes = "" if others else "--"
+        numbers = {
+            name: number(dashes + name, text) for name, text in values.items() if name not in FRAMES
+        }
+        if not numbers.keys().isdisjoint(QUATERNION) and not numbers.keys().isdisjoint(ANGLES):
+            raise ValueError("Cannot specify both quaternion and Euler rotations")
         frame_id, child_frame_id = (values.get(name, "") for name in FRAMES)
         if not frame_id:
             raise ValueError("Frame id must not be empty")
@@ -94,6 +108,11 @@ class Given:
             raise ValueError("Child frame id must not be empty")
         translation, rotation = given_transform(numbers)
         return cls(translation, rotation, frame_id, child_frame_id, bool(others))
+
+    def parameters(self) -> list[Parameter]:
+        """Return it as the parameters of `DEFAULTS`."""
+        values = *self.translation, *self.rotation, self.frame_id, self.child_frame_id
+        return [Parameter(name, value=value) for name, value in zip(DEFAULTS, values, strict=True)]
 
 
 def separated(args: Sequence[str]) -> tuple[dict[str, str], list[str]]:
@@ -120,7 +139,7 @@ def number(name: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"Failed to parse --{name} argument as float")
+        raise ValueError(f"Failed to parse {name} argument as float")
     return value
 
 
@@ -128,26 +147,29 @@ class StaticTransformPublisher(Node):
     """Publishes one transform on /tf_static; its parameters say which, and are read-only.
 
     Args:
-        given: The transform.
+        given: The transform; the parameters say it if left out.
 
     Raises:
         CommandError: Parent and child are the same frame.
     """
 
-    def __init__(self, given: Given) -> None:
+    def __init__(self, given: Given | None = None) -> None:
         letters = random.choices(string.ascii_letters + string.digits, k=16)  # noqa: S311  # a name
-        values: dict[str, float | str] = {
-            **{f"translation.{axis}": given.translation[at] for at, axis in enumerate("xyz")},
-            **{f"rotation.{axis}": given.rotation[at] for at, axis in enumerate("xyzw")},
-            "frame_id": given.frame_id,
-            "child_frame_id": given.child_frame_id,
-        }
         super().__init__(
             f"static_transform_publisher_{''.join(letters)}",
-            parameter_overrides=[Parameter(name, value=value) for name, value in values.items()],
+            parameter_overrides=[] if given is None else given.parameters(),
         )
-        for name, value in values.items():
-            self.declare_parameter(name, value, ParameterDescriptor(read_only=True))
+        values = {
+            name: self.declare_parameter(name, value, ParameterDescriptor(read_only=True)).value
+            for name, value in DEFAULTS.items()
+        }
+        if given is None:
+            given = Given(
+                tuple(values[f"translation.{axis}"] for axis in "xyz"),
+                tuple(values[f"rotation.{axis}"] for axis in "xyzw"),
+                values["frame_id"],
+                values["child_frame_id"],
+            )
         log = self.get_logger()
         if given.is_old_style:
             log.warning("Old-style arguments are deprecated; see --help for new-style arguments")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from aionode import Context
+from aionode import Context, Parameter
 from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import String
@@ -152,6 +152,14 @@ async def test_what_is_no_description_is_not_used(
         ({"dependent_joints.one.speed": 1.0}, "Invalid dependent_joint name 'speed'"),
         ({"dependent_joints.one.factor": 1.0}, "All dependent_joints must at least have a parent"),
         ({"rate": 0}, "rate is 0; use a number above 0"),
+        ({"delta": "fast"}, "delta is 'fast'; use a number"),
+        ({"use_mimic_tags": "yes"}, "use_mimic_tags is 'yes'; use true or false"),
+        ({"source_list": "arm"}, "source_list is 'arm'; use a list of topics"),
+        ({"zeros.one": "up"}, "zeros.one is 'up'; use a number"),
+        (
+            {"dependent_joints.one.parent": "two", "dependent_joints.one.factor": "half"},
+            "dependent_joints.one.factor is 'half'; use a number",
+        ),
     ],
 )
 async def test_parameters_that_do_not_fit_are_named(
@@ -160,3 +168,21 @@ async def test_parameters_that_do_not_fit_are_named(
     """In the words of the original, where it has some."""
     with pytest.raises(CommandError, match=text):
         start(JointStatePublisher, **parameters)
+
+
+async def test_a_parameter_set_later_does_not_end_the_program(
+    start: Start, tmp_path: Path, manual_clock: ManualClock, node_factory: Callable[..., Any]
+) -> None:
+    """It is read at the start only, as in the original; of another type it is refused."""
+    file = tmp_path / "robot.urdf"
+    file.write_text(URDF)
+    node = start(JointStatePublisher, str(file))
+    heard: list[JointState] = []
+    node_factory("watcher").create_subscription(JointState, "joint_states", heard.append)
+
+    assert not node.set_parameters([Parameter("delta", value="fast")])[0].successful
+    assert node.set_parameters([Parameter("delta", value=0.5)])[0].successful
+    await manual_clock.advance(0.2)
+    await settle()
+
+    assert heard[-1].position.tolist() == heard[0].position.tolist()

@@ -12,6 +12,7 @@ from aionode.errors import CommandError
 from aionode.programs._static_transform_publisher import Given, StaticTransformPublisher
 from aionode.testing import settle
 from aionode.tf import Buffer
+from tests.programs.conftest import Start
 
 QUARTER = math.sqrt(0.5)
 
@@ -62,8 +63,9 @@ def test_both_styles_of_arguments_say_a_transform(
         ("--x nan --frame-id a --child-frame-id b", "Failed to parse --x argument as float"),
         (
             "--yaw 1 --qw 1 --frame-id a --child-frame-id b",
-            "not both",
+            "Cannot specify both quaternion and Euler rotations",
         ),
+        ("one 0 0 0 0 0 a b", "Failed to parse x argument as float"),
         ("a b", "Extra unparsed arguments on command-line"),
         ("--x 1 0 0 0 0 0 0 a b", r"Cannot specify both new-style \(flags\) and old-style"),
     ],
@@ -95,3 +97,17 @@ async def test_a_frame_is_not_its_own_parent(aionode_context: Any) -> None:
     """Listeners would refuse it without a word."""
     with pytest.raises(CommandError, match="child_frame_id cannot equal frame_id"):
         StaticTransformPublisher(given("--frame-id a --child-frame-id a"))
+
+
+async def test_the_parameters_of_a_node_in_a_container_are_its_transform(
+    start: Start, node_factory: Callable[..., Any]
+) -> None:
+    """There are no arguments there; the defaults are those of tf2_ros."""
+    start(
+        StaticTransformPublisher, **{"translation.z": 0.5, "frame_id": "a", "child_frame_id": "b"}
+    )
+    buffer = Buffer(node_factory("listener"))
+    await settle()
+
+    found = buffer.lookup_transform("a", "b").transform
+    assert (found.translation.z, found.rotation.w) == (0.5, 1.0)

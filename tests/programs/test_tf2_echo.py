@@ -84,6 +84,7 @@ async def test_it_waits_for_the_first_transform_and_then_prints_at_its_rate(
     [
         (["odom"], 1, "Usage: tf2_echo source_frame target_frame [echo_rate]"),
         (["a", "b", "fast"], 2, "Failed to convert rate argument 'fast' to a floating-point"),
+        (["a", "b", "1.0foo"], 3, "Failed to convert rate argument '1.0foo' to a floating-point"),
     ],
 )
 def test_arguments_that_do_not_fit_are_refused(words: list[str], status: int, text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -116,8 +117,8 @@ def main() -> None:
     """Print the transform named by the arguments until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1, 2 or 3: there are too few or too many arguments, or the rate is
-            not a number.
+        SystemExit: With status 1: there are too few or too many arguments; 2: the rate is not a
+            number; 3: it only begins with one.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) not in (2, 3):
@@ -132,5 +133,5 @@ def main() -> None:
         sys.stderr.write(
             f"Failed to convert rate argument '{given}' to a floating-point number above 0\n"
         )
-        raise SystemExit(2)
+        raise SystemExit(3 if re.match(r"[-+]?\.?\d", given) else 2)
     aionode.run(lambda: Echo((words[0], words[1]), rate, show))

@@ -146,11 +146,11 @@ def main() -> None:
     """Print the delays of transforms until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1: the arguments are neither none nor two frames.
+        SystemExit: With status 255: the arguments are neither none nor two frames.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) not in (0, 2):
         sys.stderr.write("TF_Monitor: usage: tf2_monitor framea frameb\n")
-        raise SystemExit(1)
+        raise SystemExit(255)
     frames = (words[0], words[1]) if words else None
     aionode.run(lambda: Monitor(frames, show))
