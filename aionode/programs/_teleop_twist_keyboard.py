@@ -60,6 +60,9 @@ FACTORS: Final[dict[str, tuple[float, float]]] = {
 }  # fmt: skip
 """The factors of each key for the linear and the angular speed."""
 
+HELP_AFTER: Final = 15
+"""After how many changes of the speeds the help is shown again, as it has scrolled away."""
+
 REPEAT_SEC: Final = 0.1
 """Interval at which the current command is published."""
 
@@ -127,13 +130,15 @@ class Teleop(Node):
             self, lambda: self.keys.twist, self.on_expired, is_stamped=is_stamped, frame_id=frame_id
         )
         self.show = show
+        self.changes = 0
         create_wall_timer(self, REPEAT_SEC, self.twists.repeat)
 
     def press(self, key: str) -> None:
         """Handle a key, and publish its command at once."""
         text = self.keys.press(key)
         if text is not None:
-            self.show(f"{text}\n")
+            self.changes += 1
+            self.show(f"{text}\n{HELP if self.changes % HELP_AFTER == 0 else ''}")
         elif self.keys.twist is None and not self.twists.is_leased:
             # The end of a lease is itself a stop; this also ends commands of others.
             self.twists.stop()
@@ -148,6 +153,9 @@ class Teleop(Node):
 @contextmanager
 def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Iterator[None]:
     """Read single keys from the terminal within the block, without showing them.
+
+    Ctrl-C remains a signal; Ctrl-Z, Ctrl-Backslash and Ctrl-S are keys, as in the original: each
+    would otherwise freeze or end the program while the robot moves.
 
     Args:
         press: Called with each key.
@@ -164,9 +172,14 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
         )
     loop = asyncio.get_running_loop()
     import termios  # not on Windows
-    import tty
 
     before = termios.tcgetattr(number)
+    mode = termios.tcgetattr(number)
+    mode[0] &= ~(termios.IXON | termios.IXOFF)  # the flags of the input
+    mode[3] &= ~(termios.ECHO | termios.ICANON | termios.IEXTEN)  # the local flags
+    for name in ("VQUIT", "VSUSP", "VDSUSP", "VSTATUS"):  # some systems lack the last ones
+        if hasattr(termios, name):
+            mode[6][getattr(termios, name)] = os.fpathconf(number, "PC_VDISABLE")
 
     def read() -> None:
         try:
@@ -179,7 +192,7 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
             loop.remove_reader(number)
             end()
 
-    tty.setcbreak(number)  # Ctrl-C remains a signal
+    termios.tcsetattr(number, termios.TCSAFLUSH, mode)
     loop.add_reader(number, read)
     try:
         yield

@@ -240,6 +240,28 @@ def test_the_wheels_stop_in_whatever_way_the_program_goes(
     terminals.wheels.expect(told, timeout=10)
 
 
+@pytest.mark.parametrize("key", [pytest.param(key, marks=IN_TERMINALS) for key in "\x1a\x1c\x13"])
+def test_keys_that_freeze_or_end_programs_stop_the_robot_like_any_other(
+    terminals: Terminals, key: str
+) -> None:
+    """Ctrl-Z, Ctrl-Backslash and Ctrl-S are keys in the original; the program goes on."""
+    terminals.keys.send(key)
+    terminals.wheels.expect("speed 0.0", timeout=10)
+
+    terminals.keys.send("i")
+    terminals.wheels.expect("speed 0.5", timeout=10)
+
+
+async def test_the_help_is_shown_again_after_fifteen_changes(start: Start) -> None:
+    """It has scrolled away by then, as in the original."""
+    shown: list[str] = []
+    node = start(Teleop, shown.append)
+    for _ in range(15):
+        node.press("w")
+
+    assert ["Keys move the robot" in text for text in shown] == [False] * 14 + [True]
+
+
 def test_without_a_terminal_it_says_where_to_start_it() -> None:
     """A launch file has none for it."""
     from tests.support.fork_server import run
