@@ -32,7 +32,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
     "teleop_twist_joy": {"teleop_node": "_joy.teleop_node"},
     "tf2_ros": {
-        "buffer_server": "_buffer_server",
+        "buffer_server": "_tf2.buffer_server",
         "tf2_echo": "_tf2.echo",
         "tf2_monitor": "_tf2.monitor",
         "static_transform_publisher": "_static_transform_publisher",

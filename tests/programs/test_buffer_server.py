@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from aionode import Node
-from aionode.programs._buffer_server import TransformServer
+from aionode.programs._tf2.buffer_server import TransformServer
 from aionode.testing import settle
 from aionode.tf import BufferClient, StaticTransformBroadcaster
 from tests.programs.conftest import Start

@@ -1,1 +1,1 @@
-"""Programs of tf2_ros that print transforms."""
+"""Programs of tf2_ros that look transforms up."""
