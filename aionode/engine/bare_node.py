@@ -88,7 +88,17 @@ class BarePublisher(BareEndpoint):
         self._party = Party.of(endpoint)
         self._writers = writers
         self._here = [writer for writer in writers if isinstance(writer, LocalWriter)]
-        self._elsewhere = [writer for writer in writers if not isinstance(writer, LocalWriter)]
+        self._leave_out_placeholders()
+        for writer in writers:
+            writer.when_replaced(self._leave_out_placeholders)
+
+    def _leave_out_placeholders(self) -> None:
+        """Send messages only to writers that are not placeholders."""
+        self._elsewhere = [
+            writer
+            for writer in self._writers
+            if not (writer.is_placeholder or isinstance(writer, LocalWriter))
+        ]
 
     def publish(self, msg: Any, source_ns: int) -> None:
         """Send a message to every matched subscription.

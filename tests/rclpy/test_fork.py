@@ -70,11 +70,31 @@ print(json.dumps(said), flush=True)
 """
 
 
-def test_a_forked_child_is_told_that_it_cannot_use_the_context() -> None:
-    """It has neither the sending thread nor sockets of its own; the parent is not disturbed."""
-    process = subprocess.run(
+FORKS_IN_A_THREAD = """
+import os, signal, threading
+from rclpy._impl import uninterrupted
+
+signal.signal(signal.SIGUSR1, lambda *_: None)
+
+
+def fork():
+    child = os.fork()
+    if child == 0:
+        os._exit(uninterrupted.begin())
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), uninterrupted.begin())
+
+
+thread = threading.Thread(target=fork)
+thread.start()
+thread.join()
+"""
+
+
+def run(program: str) -> subprocess.CompletedProcess[str]:
+    """Run a program of rclpy."""
+    return subprocess.run(
         [sys.executable, "-m", "aionode.rclpy", "/dev/stdin"],
-        input=PROGRAM,
+        input=program,
         capture_output=True,
         text=True,
         timeout=PATIENCE_S,
@@ -86,6 +106,21 @@ def test_a_forked_child_is_told_that_it_cannot_use_the_context() -> None:
         },
         check=False,
     )
+
+
+def test_signals_interrupt_the_thread_that_forked_the_child() -> None:
+    """It is the main thread there, so it may do nothing that a program's handler may not interrupt.
+
+    In the parent, handlers run in another thread.
+    """
+    process = run(FORKS_IN_A_THREAD)
+
+    assert process.stdout.split() == ["0", "True"], process.stderr
+
+
+def test_a_forked_child_is_told_that_it_cannot_use_the_context() -> None:
+    """It has neither the sending thread nor sockets of its own; the parent is not disturbed."""
+    process = run(PROGRAM)
     assert process.stdout, process.stderr
     said: dict[str, Any] = json.loads(process.stdout)
 

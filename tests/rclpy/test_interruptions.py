@@ -22,7 +22,7 @@ PROGRAM = Path(__file__).parent / "interruptions.py"
 PATIENCE_S = 60.0
 """Longest time for a program, in seconds; it takes two."""
 
-WELL = dict.fromkeys(("publish", "spin", "ask"), "well at 30 places")
+WELL = dict.fromkeys(("publish", "spin", "ask"), "well at 25 places")
 
 pytestmark = [
     pytest.mark.timeout(90),

@@ -18,7 +18,6 @@ from rclpy._impl.wait_set import WaitSet
 from rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
-    from rclpy._impl.destroyable import Arrivals
     from rclpy._protocols import ExecutorLike, NodeLike
     from rclpy.callback_groups import Entity
 
@@ -34,10 +33,10 @@ now_ns = MachineTime().system_ns
 MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
 
 
-def find_ready(
+def find_ready(  # noqa: C901  # twice for each message, so in one function
     nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
 ) -> list[Ready]:
-    """Return what is ready now, in the order of a round."""
+    """Return what is ready now, in the order of a round; note where nothing was."""
     ready: list[Ready] = []
     for node in nodes:
         if node._Node__waitables:  # few nodes have any
@@ -55,23 +54,22 @@ def find_ready(
             (node._clients, handle.responses, take_client),
             (node._services, handle.requests, take_service),
         ):
-            if entities and (arrivals is None or arrivals.last is not arrivals.seen):
-                for entity in ready_entities(entities, arrivals):
+            if not entities:
+                continue
+            last = None
+            if arrivals is not None:
+                last = arrivals.last
+                if last is arrivals.seen:
+                    continue
+            found = False
+            # A copy: another thread may destroy one meanwhile, and the next one would be skipped.
+            for entity in tuple(entities):
+                if entity._handle.ready():
+                    found = True
                     if can_execute(entity):
-                        ready.append((entity, node, take))  # rarely any
-    return ready
-
-
-def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
-    """Return the ready entities; if there are none, note in `arrivals` that all were checked."""
-    last = None if arrivals is None else arrivals.last
-    ready = []
-    # A copy: another thread may destroy one meanwhile, and the next one would be skipped.
-    for entity in tuple(entities):
-        if entity._handle.ready():
-            ready.append(entity)  # noqa: PERF401  # a comprehension is one more call
-    if arrivals is not None and not ready:
-        arrivals.seen = last
+                        ready.append((entity, node, take))
+            if arrivals is not None and not found:
+                arrivals.seen = last
     return ready
 
 

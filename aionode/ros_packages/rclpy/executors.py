@@ -14,7 +14,6 @@ import time  # noqa: TID251  # for programs that take it from here
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self, cast
 
 from aionode.clock import MachineTime
@@ -206,19 +205,15 @@ class Executor:
         """Whether a thread is in one of the spin methods; of newer rclpy."""
         return self._Executor__spins > 0
 
-    @contextmanager
-    def _Executor__spinning(self) -> Iterator[None]:
-        self._Executor__spins += 1
-        try:
-            yield
-        finally:
-            self._Executor__spins -= 1
-
     def spin(self) -> None:
         """Call callbacks until the executor or its context is shut down."""
-        with self._Executor__spinning():
+        # Not by a context manager, which would take a tenth of a message's time.
+        self._Executor__spins += 1
+        try:
             while self._context.ok() and not self._is_shutdown:
                 self.spin_once()
+        finally:
+            self._Executor__spins -= 1
 
     def spin_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
@@ -232,8 +227,11 @@ class Executor:
         # A future created by this executor is one of its tasks, which costs `spin_once` one more
         # call.
         future.add_done_callback(lambda _: self.wake())
-        with self._Executor__spinning():
+        self._Executor__spins += 1
+        try:
             self._Executor__spin_until(future, timeout_sec)
+        finally:
+            self._Executor__spins -= 1
 
     def _Executor__spin_until(self, future: Future[Any], timeout_sec: float | None) -> None:
         if timeout_sec is None or timeout_sec < 0:
@@ -267,7 +265,6 @@ class Executor:
             NotImplementedError: a custom executor does not define this method.
             Exception: raised by the callback, or by an earlier one called in a thread.
         """
-        # not `__spinning()`, which would take a tenth of a callback's time
         self._Executor__spins += 1
         try:
             self._spin_once_impl(timeout_sec)
@@ -279,8 +276,11 @@ class Executor:
     ) -> None:
         """Like `spin_once`, but return as soon as `future` is done."""
         future.add_done_callback(lambda _: self.wake())
-        with self._Executor__spinning():
+        self._Executor__spins += 1
+        try:
             self._spin_once_impl(timeout_sec, future.done)
+        finally:
+            self._Executor__spins -= 1
 
     def _spin_once_impl(
         self,
@@ -350,7 +350,7 @@ class Executor:
         """Return the callbacks of one round as tasks, waiting until there is one."""
         return map(self._Executor__as_task, self._Executor__rounds(timeout_sec, nodes, condition))
 
-    def _Executor__rounds(
+    def _Executor__rounds(  # noqa: C901, PLR0912  # once for each message, so in one function
         self,
         timeout_sec: float | TimeoutObject | None,
         nodes: list[NodeLike] | None,
@@ -362,20 +362,28 @@ class Executor:
         ends_ns = None
         if timeout_sec is not None and timeout_sec >= 0:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
+        context = self._Executor__context_handle
         yielded = False
         while not yielded:
             self._Executor__wakeup.take(False)  # whatever woke it is checked now
-            self._Executor__raise_if_over(condition)
+            if self._is_shutdown or context.is_shut_down or condition():
+                self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
             if self._tasks:
                 for work in self._Executor__unfinished(used):
                     yielded = True
                     yield work
-            ready = find_ready(used, self.can_execute, self._Executor__context_handle)
+            ready = find_ready(used, self.can_execute, context)
             if not ready and not yielded:
-                ready = self._Executor__ready_after_wait(used, ends_ns)
+                left_ns = None if ends_ns is None else ends_ns - steady_ns()
+                if left_ns is None or left_ns > 0:
+                    self._Executor__wait(used, left_ns)
+                    if self._is_shutdown or context.is_shut_down:
+                        self._Executor__raise_if_over()
+                    ready = find_ready(used, self.can_execute, context)
+            if len(ready) > 1:
+                ready = self._Executor__in_turn(ready)
             # Before the calls, which may take longer than the limit.
-            ready = self._Executor__in_turn(ready)
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for call in ready:
                 # A call of this round may have started another one, of the same group.
@@ -401,17 +409,6 @@ class Executor:
         if condition():
             raise ConditionReachedException
 
-    def _Executor__ready_after_wait(
-        self, nodes: list[NodeLike], ends_ns: int | None
-    ) -> list[Ready]:
-        left_ns = None if ends_ns is None else ends_ns - steady_ns()
-        if left_ns is not None and left_ns <= 0:
-            return []
-        self._Executor__wait(nodes, left_ns)
-        if self._is_shutdown or self._Executor__context_handle.is_shut_down:
-            self._Executor__raise_if_over()
-        return find_ready(nodes, self.can_execute, self._Executor__context_handle)
-
     def _Executor__unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
         """Yield the tasks that can continue, and remove those that are done."""
         with self._tasks_lock:
@@ -433,6 +430,7 @@ class Executor:
     def _Executor__wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
         """Wait until something may be ready, or the time has passed."""
         waits = [] if left_ns is None else [left_ns]
+        waitables: list[Any] = []
         for node in nodes:
             for timer in tuple(node._timers):
                 # If its group is busy, the end of that group's call wakes the executor.
@@ -440,12 +438,8 @@ class Executor:
                     due_ns = timer.handle.due_in_ns()
                     if due_ns is not None:
                         waits.append(due_ns)
-        waitables = [
-            waitable
-            for node in nodes
-            for waitable in tuple(node._Node__waitables)
-            if self.can_execute(waitable)
-        ]
+            if node._Node__waitables:  # few nodes have any
+                waitables += filter(self.can_execute, tuple(node._Node__waitables))
         wait_set = wait_set_of(waitables, self._Executor__context_handle) if waitables else None
         if wait_set is not None:
             due_ns = wait_set.due_in_ns()

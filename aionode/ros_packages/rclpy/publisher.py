@@ -60,13 +60,21 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
             TypeError: it is of another class, or a value does not fit its field.
             InvalidHandle: the publisher is destroyed.
         """
-        with self._handle:
+        handle = self._handle
+        handle._uses.append(None)  # `with handle` inlined: three calls less for each message
+        try:
+            if handle._unwanted:
+                handle.refuse()
             if isinstance(msg, self.msg_type):
-                self._handle.publish(msg)
+                handle.publish(msg)
             elif isinstance(msg, bytes):
-                self._handle.publish_raw(msg)
+                handle.publish_raw(msg)
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+        finally:
+            handle._uses.pop()
+            if handle._unwanted:
+                handle._destroy_if_unused()
 
     get_subscription_count = in_use(PublisherHandle.get_subscription_count)
     assert_liveliness = in_use(PublisherHandle.assert_liveliness)

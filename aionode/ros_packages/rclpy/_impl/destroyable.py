@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from _thread import allocate_lock
 from contextlib import suppress
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, NoReturn, Protocol, Self
 
 from aionode.clock import MachineTime
 from rclpy._impl.errors import InvalidHandle
@@ -18,8 +18,6 @@ LONGEST_WAIT_S = 3600.0
 """Longest wait of one system call, in seconds, for a lock or for descriptors.
 
 Some systems refuse more than 24 days, so a longer wait consists of several.
-
-Some systems refuse more than 24 days. A longer wait consists of several.
 """
 
 steady_ns = MachineTime().steady_ns
@@ -148,7 +146,7 @@ class Destroyable:
         self._uses.append(None)
         if self._unwanted:
             self._leave()
-            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+            self.refuse()
         return self
 
     def __exit__(self, exc_type: object, exc: object, traceback: object) -> None:
@@ -166,6 +164,14 @@ class Destroyable:
     def __del__(self) -> None:
         if not getattr(self, "_unwanted", True):
             self.destroy_when_not_in_use()
+
+    def refuse(self) -> NoReturn:
+        """Raise, because it is not to be used any more.
+
+        Raises:
+            InvalidHandle: always.
+        """
+        raise InvalidHandle("cannot use Destroyable because destruction was requested")
 
     @property
     def pointer(self) -> int:

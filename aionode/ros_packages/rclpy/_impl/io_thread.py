@@ -40,8 +40,6 @@ STOP_S = 5.0
 """How long the end of the process waits for the thread: longer than all of its steps.
 
 Inside Zenoh at the very end, it would abort the process.
-
-Inside Zenoh at the very end, it would abort the process.
 """
 
 logger = logging.getLogger("aionode.rclpy")
@@ -172,11 +170,14 @@ class IoThread:
         """Call `work`, which delivers inside this context, and then call its result like `send`.
 
         Only one call is in progress at a time. It is complete when this returns; only for a
-        finalizer that has interrupted such a call it completes later.
+        finalizer that has interrupted such a call it completes later. It waits first while more is
+        posted than the thread has done.
 
         Raises:
             Exception: raised by `work`.
         """
+        if len(self._work) >= MOST_WAITING:
+            self._pace()
         if uninterrupted.begin():
             try:
                 with self._delivery_lock:
@@ -216,7 +217,8 @@ class IoThread:
         Raises:
             ForkedProcessError: the context belongs to the parent of this forked process.
         """
-        self.refuse_if_inherited()
+        if self._inherited:
+            self.refuse_if_inherited()
         readers = None if self._loop is None else self._loop.readers
         ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
         if (
@@ -237,13 +239,9 @@ class IoThread:
                 uninterrupted.end()
         return wakeup.wait(None if ends_ns is None else (ends_ns - steady_ns()) / 1e9)
 
-    def pace(self) -> None:
-        """Wait while more is posted than the thread has done; for callers that post much."""
-        if (
-            len(self._work) >= MOST_WAITING
-            and not self.is_current
-            and not uninterrupted.current.begun
-        ):
+    def _pace(self) -> None:
+        """Wait until the thread has done what is posted, where it is possible to wait."""
+        if not self.is_current and not uninterrupted.current.begun:
             turn = Wakeup()
             self.post(turn.wake)
             turn.wait(None)

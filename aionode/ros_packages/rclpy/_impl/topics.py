@@ -77,11 +77,9 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         """
         if self._node.context_handle.is_shut_down:
             self._node.context_handle.refuse_to_publish()
-        io = self.io
-        io.pace()
-        io.deliver(self._publish_here, self._support.wire_type(data))
+        self.io.deliver(self._publish_here, self._support.wire_type(data))
         if self.feed:
-            io.post(self._tell_feed)
+            self.io.post(self._tell_feed)
 
     def _publish_here(self, msg: Any) -> Callable[[], object] | None:
         """Deliver a message within this context; return the function that sends it to others."""

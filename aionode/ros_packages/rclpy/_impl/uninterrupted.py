@@ -12,6 +12,7 @@ message to the context's thread, and one that waits for an answer gets an error.
 
 from __future__ import annotations
 
+import os
 import signal
 
 # `signal.getsignal` creates an enum for each answer, which takes ten times as long.
@@ -55,10 +56,15 @@ postponed: list[Callable[[], object]] = []
 
 
 class Handlers:
-    """The installed handlers at the last check, and whether all of them are harmless."""
+    """The installed handlers at the last check, whether all of them are harmless, and their thread.
+
+    Attributes:
+        thread: The main thread, in which Python calls them.
+    """
 
     seen: list[Any] | None = None
     harmless = False
+    thread = main_thread().ident
 
 
 def begin() -> bool:
@@ -75,7 +81,7 @@ def begin() -> bool:
     current.active = True
     alone = False
     try:
-        alone = get_ident() != main_thread().ident or handlers_are_harmless()
+        alone = get_ident() != Handlers.thread or handlers_are_harmless()
     finally:
         # A handler of the program that interrupts the check may wait: the work does not begin then.
         current.begun = alone
@@ -103,6 +109,15 @@ def handlers_are_harmless() -> bool:
         )
         Handlers.seen = installed
     return Handlers.harmless
+
+
+def note_main_thread() -> None:
+    """Note the main thread; called in a forked child, where it is the one that has forked."""
+    Handlers.thread = main_thread().ident
+
+
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=note_main_thread)  # after that of `threading`
 
 
 def postpone(action: Callable[[], object]) -> bool:
