@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from aionode import image
 from aionode.bag import Record, TopicInfo
@@ -22,7 +20,6 @@ from aionode.learn._alignment import Series, aligned
 from aionode.learn._scan import Collected
 from tests.support.demonstrations import (
     HEIGHT,
-    SPEED,
     START_NS,
     WIDTH,
     Timing,
@@ -356,10 +353,6 @@ def test_an_export_is_checked(tmp_path: Path) -> None:
 # Alignment
 
 
-ROUNDING_SEC = 1e-6
-"""A message that is later by less counts as of the same time."""
-
-
 def series(times_sec: Any, values: Any = None) -> Series:
     """Return messages at times."""
     times = np.unique(np.round(np.asarray(times_sec) * 1e9).astype(np.int64))
@@ -379,47 +372,3 @@ def test_a_command_of_every_period_is_taken_once() -> None:
         ],
     )
     assert np.diff(rows.values[2][:98, 0]).tolist() == [1.0] * 97
-
-
-@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
-@given(
-    phase=st.floats(0, 0.05),
-    camera_hz=st.floats(28, 32),
-    joints_hz=st.floats(10, 500),
-    jitter=st.floats(0, 0.01),
-    late=st.floats(0, 0.1),
-    hold=st.booleans(),
-    seed=st.integers(0, 1000),
-)
-def test_a_picture_and_its_joint_agree_within_the_age_that_is_told(
-    phase: float,
-    camera_hz: float,
-    joints_hz: float,
-    jitter: float,
-    late: float,
-    hold: bool,
-    seed: int,
-) -> None:
-    """For any phase, rate and jitter: the marker shows the joint at the picture's time."""
-    observations = contract().to_dict()["observations"]
-    observations[1] |= {"resample": "hold"} if hold else {}
-    made = contract(observations=[each | {"max_age": 0.2} for each in observations])
-
-    def joint(times: Any) -> Any:
-        angles = np.vectorize(angle)(times)
-        return np.stack([angles, angles], axis=1)
-
-    rows = aligned(
-        made,
-        [
-            series(Timing(camera_hz, phase, jitter).times(3, seed)),
-            series(Timing(joints_hz, late, jitter).times(3, seed + 1), joint),
-            series(Timing(30).times(4), lambda times: times[:, None]),
-        ],
-    )
-    for time, age, value in zip(rows.times, rows.ages[1], rows.values[1], strict=True):
-        assert 0 <= age <= 0.2 + 1e-6
-        assert abs(value[0] - angle(time / 1e9)) <= SPEED * (age + ROUNDING_SEC)
-    steps = np.diff(rows.times) / 1e9
-    inside = np.delete(steps, [start - 1 for start in rows.starts if start])
-    assert inside.max(initial=0) <= 1.5 / 30 + 1e-9

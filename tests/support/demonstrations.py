@@ -159,11 +159,16 @@ def demonstration(
     custom = dict(metadata)
     if recorded_with is not None:
         custom["contract"] = json.dumps(recorded_with.to_dict())
-    with BagWriter(path, custom_data=custom) as writer:
+    write_bag(path, edit(sorted(messages, key=lambda each: each[0])), custom)
+    return path
+
+
+def write_bag(path: Path, messages: Messages, metadata: dict[str, str] | None = None) -> None:
+    """Write messages to a bag."""
+    with BagWriter(path, custom_data=metadata or {}) as writer:
         ids: dict[tuple[str, type], int] = {}
-        for time_ns, topic, message in edit(sorted(messages, key=lambda each: each[0])):
+        for time_ns, topic, message in messages:
             key = topic, type(message)
             if key not in ids:
                 ids[key] = writer.add_topic(topic_info(topic, type(message)))
             writer.write(ids[key], time_ns, cdr.encode(message))
-    return path
