@@ -17,8 +17,14 @@ from aionode._packages._here import (
 )
 from aionode._packages._packages import Packages
 from aionode._packages._parameter_modules import ParameterModule, parameter_modules
-from aionode._packages._standard import program_module, remark_on, standard_packages
-from aionode._packages._starters import is_starter_file, on_path, starter_file
+from aionode._packages._standard import (
+    is_terminal,
+    is_window,
+    program_module,
+    remark_on,
+    standard_packages,
+)
+from aionode._packages._starters import is_starter_file, starter_file, tools_on_path
 from aionode._packages._workspace import package_of, workspace_of
 
 __all__ = [
@@ -29,7 +35,8 @@ __all__ = [
     "here",
     "is_python",
     "is_starter_file",
-    "on_path",
+    "is_terminal",
+    "is_window",
     "package_of",
     "package_of_stand_in",
     "parameter_modules",
@@ -38,6 +45,7 @@ __all__ = [
     "stand_in",
     "standard_packages",
     "starter_file",
+    "tools_on_path",
     "use",
     "use_stand_ins",
     "workspace_of",

@@ -16,6 +16,7 @@ from aionode._packages._executables import (
 )
 from aionode._packages._share import share_of
 from aionode._packages._standard import (
+    is_window,
     remark_on,
     standard_executables,
     standard_packages,
@@ -124,7 +125,8 @@ class Packages:
             PackageNotFoundError: There is no such package.
             ExecutableNotFoundError: The package has no executable of this name.
         """
-        known = self.executables(package)
+        is_one_window = is_window(package, name) and not is_window(package)
+        known = {} if is_one_window and not self.has(package) else self.executables(package)
         if name not in known:
             raise ExecutableNotFoundError(package, name, self._place(package), tuple(known))
         return known[name]

@@ -8,6 +8,8 @@ from typing import Final
 from aionode._packages._executables import Executable
 
 __all__ = [
+    "is_terminal",
+    "is_window",
     "program_module",
     "remark_on",
     "standard_executables",
@@ -27,6 +29,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "image_transport": {"republish": "_camera.republish"},
     "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
+    "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
@@ -98,12 +101,30 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
 With each is the name of its node, if it is given no other one.
 """
 
+WINDOWS: Final[dict[str, frozenset[str]]] = {
+    **dict.fromkeys(("mapviz", "moveit_setup_assistant", "plotjuggler", "rviz2"), frozenset()),
+    "image_view": frozenset({"disparity_view", "image_view", "stereo_view"}),
+    "rviz_common": frozenset(),
+}
+"""Packages of windows, with the executables that are windows; none named means all of them.
+
+Those whose name begins with ``rqt`` are windows as well.
+"""
+
+TERMINALS: Final = frozenset(
+    {
+        *("gnome-terminal", "konsole", "lxterminal", "mate-terminal", "terminator", "urxvt"),
+        *("x-terminal-emulator", "xfce4-terminal", "xterm"),
+    }
+)
+"""Programs that open a window in which another program runs."""
+
+WINDOW: Final = (
+    "a window of ROS's in C++ and Qt; the page of `aionode gateway`, and Foxglove by it, show "
+    "and steer the robot"
+)
+
 REMARKS: Final[dict[str, str]] = {
-    **dict.fromkeys(
-        ("rviz2", "rviz_common", "rqt_gui", "rqt_graph", "rqt_image_view", "rqt_robot_steering"),
-        "a window of ROS's in C++ and Qt; the page of `aionode gateway`, and Foxglove by it, show "
-        "and steer the robot",
-    ),
     **dict.fromkeys(
         ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "gz_sim", "ignition_gazebo"),
         "the simulator Gazebo in C++; a node that integrates commands, as the examples have one, "
@@ -148,9 +169,29 @@ REMARKS: Final[dict[str, str]] = {
 """Packages that aionode cannot provide: what they are, and what to use instead."""
 
 
-def remark_on(package: str) -> str:
-    """Return what a package is and what to use instead, if it needs ROS 2."""
-    return REMARKS.get(package, "")
+def remark_on(package: str, executable: str = "") -> str:
+    """Return what a package, or an executable, is and what to use instead, if it needs ROS 2."""
+    return REMARKS.get(package, "") or (WINDOW if is_window(package, executable) else "")
+
+
+def is_window(package: str, executable: str = "") -> bool:
+    """Return whether a package, or one of its executables, only shows something on a screen.
+
+    A robot runs without it, on a computer that has no screen.
+
+    Args:
+        package: The name of the package.
+        executable: The name of the executable; empty for what the whole package is.
+    """
+    if package.startswith("rqt"):
+        return True
+    named = WINDOWS.get(package)
+    return named is not None and (not named or executable in named)
+
+
+def is_terminal(program: str) -> bool:
+    """Return whether a program opens a window in which another program runs."""
+    return Path(program).name in TERMINALS
 
 
 def program_module(package: str, name: str) -> str | None:

@@ -6,6 +6,7 @@ import hashlib
 import os
 import shlex
 import shutil
+import sys
 import sysconfig
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -13,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-__all__ = ["is_starter_file", "on_path", "starter_file"]
+__all__ = ["is_starter_file", "starter_file", "tools_on_path"]
 
 FOLDER: Final = "starters"
 
@@ -49,23 +50,27 @@ def is_starter_file(file: str) -> bool:
 
 
 @contextmanager
-def on_path(name: str, starter: Callable[[Path], list[str]]) -> Iterator[None]:
-    """Put a program that is installed for this Python on the PATH of this process, for a while.
+def tools_on_path(starter: Callable[[Path], list[str]]) -> Iterator[None]:
+    """Put the tools that launch files run by name on the PATH of this process, for a while.
 
-    Without an activated environment it is not there. One that is on the PATH already, and is not
-    that of this Python, stays the one that is found.
+    They are `xacro`, which is not there without an activated environment, and `ros2`, for which
+    aionode's own command stands in. One that is on the PATH already, and is not that of this
+    Python, stays the one that is found.
 
     Args:
-        name: The program.
-        starter: Returns the command that starts it.
+        starter: Returns the command that starts a program.
     """
-    program = shutil.which(name, path=sysconfig.get_path("scripts"))
-    if program is None or shutil.which(name) not in {None, program}:
-        yield
-        return
+    xacro = shutil.which("xacro", path=sysconfig.get_path("scripts"))
+    tools = {"ros2": [sys.executable, "-m", "aionode"]}
+    if xacro is not None:
+        tools["xacro"] = starter(Path(xacro))
+    folders = [
+        str(starter_file(name, command).parent)
+        for name, command in tools.items()
+        if shutil.which(name) in {None, shutil.which(name, path=sysconfig.get_path("scripts"))}
+    ]
     before = os.environ.get("PATH")
-    folder = starter_file(name, starter(Path(program))).parent
-    os.environ["PATH"] = os.pathsep.join(filter(None, [str(folder), before]))
+    os.environ["PATH"] = os.pathsep.join(filter(None, [*folders, before]))
     try:
         yield
     finally:

@@ -13,11 +13,12 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode._packages import Packages, remark_on, use_stand_ins, workspace_of
+from aionode.errors import LaunchFileError
 from aionode.launch._watch import restart_changed
-from aionode.launch.plan import Log, Step, Watch
+from aionode.launch.plan import Call, LoadNodes, Log, Opaque, Process, Step, Timer, Watch
 from aionode.rclpy import install
 
 if TYPE_CHECKING:
@@ -118,12 +119,16 @@ class Plan:
 
             context = new_context(self.path, self._arguments)
             context.packages = self._packages
-            context.left_out = {} if self._skip_missing else None
+            context.skips_missing = self._skip_missing
             steps = evaluate([self.description], context)
             self._names, self._names_before = context.names, dict(context.names)
             check_later_steps(steps, set())
             self._forget_names()
-            warnings = left_out_texts(context.left_out or {}, steps)
+            warnings = list(left_out_texts(context.left_out, steps))
+            if warnings and not (self._skip_missing or any(map(does_something, steps))):
+                windows = ", ".join(context.left_out)
+                problem = f"starts nothing but windows that are not here: {windows}; {INSTEAD}"
+                raise LaunchFileError(self.path, problem)
             self._steps = [
                 *self._misspelt(context.declared),
                 *(Log(text, "WARN") for text in warnings),
@@ -168,7 +173,7 @@ def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iter
         what = f"package '{name}' is not there"
         if executable:
             what = f"package '{name}' has no executable '{executable}' here"
-        remark = remark_on(name)
+        remark = remark_on(name, executable)
         places = ", ".join(
             f"{entity.describe()} ({entity._LaunchDescriptionEntity__where})" for entity in entities
         )
@@ -179,6 +184,14 @@ def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iter
             target = getattr(step.handler, "_OnActionEventBase__action_matcher", None)
             if id(target) in ids:
                 yield f"the {step.handler.describe()} never comes: that is left out"
+
+
+INSTEAD: Final = "the page of `aionode gateway`, and Foxglove by it, show the robot"
+
+
+def does_something(step: Step) -> bool:
+    """Return whether a step starts anything, now or later."""
+    return isinstance(step, Process | LoadNodes | Timer | Call | Opaque)
 
 
 async def run_plan(

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from aionode._packages import package_of_stand_in
+from aionode._packages import is_window, package_of_stand_in
 from aionode._process.bounded_files import read_file
 from aionode.errors import (
     AionodeError,
@@ -377,9 +377,12 @@ def failed(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError
 
 
 def is_left_out(entity: LaunchDescriptionEntity, error: Exception, context: LaunchContext) -> bool:
-    """Return whether an entity is skipped for a missing package, and record it."""
-    package = None if context.left_out is None else missing_package(error)
-    if context.left_out is None or package is None:
+    """Return whether an entity is left out for a missing package, and record it.
+
+    A window is left out even where a missing package is an error: no robot depends on it.
+    """
+    package = missing_package(error)
+    if package is None or not (context.skips_missing or is_window(*package.split(" "))):
         return False
     entities = context.left_out.setdefault(package, [])
     if not any(entity is known for known in entities):  # timers are evaluated twice

@@ -16,6 +16,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Header, String
+from aionode.logging import get_logger
 from aionode.programs._urdf import Joint, Mimic, Robot
 
 __all__ = ["JointStatePublisher", "main"]
@@ -266,7 +267,12 @@ def part_of(part: str, state: State | None, mimic: Mimic) -> float:
 
 
 def main() -> None:
-    """Run the node until Ctrl-C."""
+    """Run the node until Ctrl-C, also in the place of the one with a window."""
+    if sys.argv[0] == "joint_state_publisher_gui":
+        get_logger("joint_state_publisher").warning(
+            "the window with the sliders is not here: joints stand at their zeros, or where the "
+            "topics of the parameter 'source_list' put them"
+        )
     parser = argparse.ArgumentParser(prog="joint_state_publisher")
     parser.add_argument("description_file", help="Robot description file to use", nargs="?")
     file = parser.parse_args(remove_ros_args(sys.argv)[1:]).description_file

@@ -137,6 +137,30 @@ def test_what_it_cannot_do_is_one_line(
     assert text in capsys.readouterr().err
 
 
+def test_a_launch_file_runs_the_command_of_ros_by_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The command of aionode stands in for it where no ROS 2 is sourced."""
+    monkeypatch.setenv("PATH", "/usr/bin:/bin")
+    file = tmp_path / "spawn.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import ExecuteProcess\n"
+        "from launch.substitutions import Command, FindExecutable\n"
+        "def generate_launch_description():\n"
+        "    prefix = Command('ros2 pkg prefix --share turtlesim')\n"
+        "    ros2 = FindExecutable(name='ros2')\n"
+        "    return LaunchDescription([ExecuteProcess(cmd=[ros2, 'bag', 'record', prefix])])\n"
+    )
+
+    assert main(["launch", str(file), "--print", "--json"]) == 0
+
+    program, *rest = json.loads(capsys.readouterr().out)["argv"]
+    assert "-m aionode" in Path(program).read_text(encoding="utf-8")
+    assert rest[:2] == ["bag", "record"]
+    assert rest[2].rstrip().endswith("_share/turtlesim")
+
+
 def test_a_launch_file_in_python_runs_xacro_by_its_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

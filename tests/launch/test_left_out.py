@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -82,9 +84,89 @@ def test_without_the_option_the_first_of_them_is_an_error_that_says_what_it_is(
 ) -> None:
     """Nothing is started then, as for any mistake in a file."""
     text = FILE.replace('get_package_share_directory("tb3_sim")', '"/share"')
+    text = text.replace('package="rviz2", executable="rviz2"', 'package="gz_sim", executable="gz"')
 
-    with pytest.raises(LaunchFileError, match=r"'rviz2': not found in .* it is a window of ROS's"):
+    with pytest.raises(LaunchFileError, match=r"'gz_sim': not found in .* it is the simulator"):
         _ = Plan(files.write("a.launch.py", text)).steps
+
+
+WINDOWS = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import OnProcessExit
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    driver = ExecuteProcess(cmd=["driver"])
+    return LaunchDescription([
+        Node(package="rviz2", executable="rviz2", on_exit=[Shutdown()],
+             arguments=["-d", [FindPackageShare("not_there"), "/view.rviz"]]),
+        Node(package="rqt_robot_monitor", executable="rqt_robot_monitor"),
+        Node(package="image_view", executable="image_view"),
+        ExecuteProcess(cmd=["/opt/plotjuggler -n"], shell=True),
+        TimerAction(period=1.0, actions=[Node(package="rviz2", executable="rviz2")]),
+        RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[
+            Node(package="rqt_graph", executable="rqt_graph")])),
+        driver,
+    ])
+"""
+
+
+def planned(files: Files, text: str) -> list[dict[str, Any]]:
+    """Return what a file starts, where nothing is skipped on request."""
+    return list(Plan(files.write("a.launch.py", text)).records())
+
+
+def test_windows_that_are_not_here_are_left_out_without_being_asked(files: Files) -> None:
+    """No robot depends on one: its other programs start, on a computer without a screen too."""
+    found = planned(files, WINDOWS)
+
+    assert [each["argv"] for each in found if "argv" in each] == [["driver"]]
+    logs = [each["log"] for each in found if "log" in each and not each["when"]]
+    assert [text.split("'")[1] for text in logs] == [
+        *("rviz2", "rqt_robot_monitor", "image_view", "plotjuggler", "rqt_graph"),
+    ]
+    assert all("the page of `aionode gateway`, and Foxglove" in text for text in logs)
+
+
+def test_a_file_of_nothing_but_windows_is_refused(files: Files) -> None:
+    """Otherwise it would end at once, and its user would not know what to do instead."""
+    text = WINDOWS.replace("        driver,\n", "").replace(
+        'TimerAction(period=1.0, actions=[Node(package="rviz2", executable="rviz2")]),', ""
+    )
+
+    with pytest.raises(LaunchFileError, match=r"nothing but windows .*: rviz2, rqt_robot_monitor"):
+        planned(files, text)
+
+
+def test_only_the_windows_of_a_package_are_left_out(files: Files) -> None:
+    """image_view has programs that save images as well."""
+    text = WINDOWS.replace('executable="image_view"', 'executable="image_saver"')
+
+    with pytest.raises(LaunchFileError, match="package 'image_view': not found"):
+        planned(files, text)
+
+
+def test_a_window_that_is_there_is_started(files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such as those of a ROS 2 that is sourced."""
+    program = Path(files.write("bin/plotjuggler", "#!/bin/sh\n"))
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(program.parent), prepend=os.pathsep)
+
+    found = planned(files, WINDOWS.replace("/opt/plotjuggler -n", "plotjuggler -n"))
+
+    assert [each["argv"] for each in found if "argv" in each] == [["plotjuggler -n"], ["driver"]]
+
+
+def test_a_program_starts_without_the_terminal_that_is_not_here(files: Files) -> None:
+    """Its window would only show what the log shows as well."""
+    text = WINDOWS.replace('cmd=["driver"]', 'cmd=["driver"], prefix="/no/xterm -e"')
+
+    found = planned(files, text)
+
+    assert [each["argv"] for each in found if "argv" in each] == [["driver"]]
+    assert any("'/no/xterm' for it is not there" in each.get("log", "") for each in found)
 
 
 def test_what_is_wrong_otherwise_stays_an_error(files: Files) -> None:

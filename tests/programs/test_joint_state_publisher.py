@@ -12,7 +12,7 @@ from aionode import Context, Parameter
 from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import String
-from aionode.programs._joint_state_publisher import JointStatePublisher
+from aionode.programs._joint_state_publisher import JointStatePublisher, main
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
@@ -186,3 +186,15 @@ async def test_a_parameter_set_later_does_not_end_the_program(
     await settle()
 
     assert heard[-1].position.tolist() == heard[0].position.tolist()
+
+
+def test_in_the_place_of_the_one_with_a_window_it_says_what_moves_the_joints(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Whoever starts it looks for sliders."""
+    monkeypatch.setattr("sys.argv", ["joint_state_publisher_gui", "--help"])
+
+    with pytest.raises(SystemExit):
+        main()
+
+    assert "the topics of the parameter 'source_list'" in capfd.readouterr().err

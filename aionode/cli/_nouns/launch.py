@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from aionode._packages import Packages, around, on_path
+from aionode._packages import Packages, around, tools_on_path
 from aionode.cli._support.exit import become
 from aionode.cli._support.options import interfaces_option
 from aionode.errors import CommandError, escaped
@@ -93,7 +93,7 @@ def launch_command(
     if real:
         run_real(path, values)
     packages = around(Path(path)) if workspace is None else Packages(Path(workspace))
-    with on_path("xacro", packages.starter):  # Python in launch files runs it by this name
+    with tools_on_path(packages.starter):
         plan = Plan(path, values, workspace=workspace, skip_missing=skip_missing)
         if show_args:
             for line in map(argument_text, plan.declared):

@@ -57,9 +57,11 @@ class LaunchContext:
         """The packages in which executables and files are searched."""
         self.declared: set[str] = set()
         """The arguments that have been declared."""
-        self.left_out: dict[str, list[Any]] | None = None
-        """The entities skipped because of a missing package; None if a missing package is an
-        error."""
+        self.skips_missing = False
+        """Whether to leave out what needs a missing package; otherwise that is an error, unless
+        it is a window."""
+        self.left_out: dict[str, list[Any]] = {}
+        """The entities left out because of a missing package, by its name."""
         self.ahead = False
         """Whether the entities being evaluated are executed later."""
         self.visited = 0
@@ -87,6 +89,7 @@ class LaunchContext:
         later.packages = self.packages
         later.names = self.names  # one count for the whole description
         later.declared = self.declared
+        later.skips_missing = self.skips_missing
         later.left_out = self.left_out
         later.ahead = ahead or self.ahead
         if ahead:  # it changes nothing for entities that are executed

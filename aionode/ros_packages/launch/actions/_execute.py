@@ -7,8 +7,9 @@ import re
 import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+from aionode._packages import is_terminal, is_window
 from aionode.launch.plan import Log, ParameterValues, Process
 from launch.action import Action
 from launch.descriptions import Executable
@@ -19,9 +20,15 @@ from launch.substitution import (
     perform_substitutions,
     text_of,
 )
+from launch.substitutions import program_of
 from launch.utilities.type_utils import perform_typed_substitution
 
 __all__ = ["ExecuteLocal", "ExecuteProcess"]
+
+WITHOUT_TERMINAL: Final = (
+    "{}: the terminal '{}' for it is not there, so it runs without one; if it reads keys, run it "
+    "in a terminal of yours instead"
+)
 
 
 class ExecuteLocal(Action):
@@ -70,14 +77,26 @@ class ExecuteLocal(Action):
         return []
 
     def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
-        """Return the program and its arguments."""
-        first, *rest = self.process_description.cmd
-        # An executable of a package that is not built is a command rather than a path.
-        command = (
-            getattr(first[0], "_ExecutableInPackage__command", None) if len(first) == 1 else None
-        )
-        words = command(context) if callable(command) else [perform_substitutions(context, first)]
+        """Return the program and its arguments; what is wrong with the program comes first."""
+        program, *rest = self.process_description.cmd
+        words = self._ExecuteLocal__program_words(context, program)
         return [*words, *(perform_substitutions(context, word) for word in rest)]
+
+    def _ExecuteLocal__program_words(self, context: LaunchContext, program: list[Any]) -> list[str]:
+        """Return the path of the program, or the command that starts it.
+
+        Raises:
+            PackageNotFoundError: It is a window that is not here.
+        """
+        # An executable of a package that is not built is a command rather than a path.
+        command = getattr(program[0], "_ExecutableInPackage__command", None)
+        if len(program) == 1 and callable(command):
+            return list(command(context))
+        word = perform_substitutions(context, program)
+        name = Path(word.partition(" ")[0]).name  # a line for the shell is one word
+        if is_window(name) and program_of(name, context) is None:
+            raise context.packages.not_found(name)
+        return [word]
 
     def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the program, from which the process gets its name."""
@@ -157,11 +176,15 @@ class ExecuteLocal(Action):
         """Return the command prefixed to the program, such as ``gdb --args``."""
         described = self.process_description
         if described.prefix is not None:
-            return shlex.split(perform_substitutions(context, described.prefix))
-        pattern = str(context.launch_configurations.get("launch-prefix-filter", ""))
-        if not re.match(pattern, program):
+            prefix = shlex.split(perform_substitutions(context, described.prefix))
+        elif re.match(str(context.launch_configurations.get("launch-prefix-filter", "")), program):
+            prefix = shlex.split(str(context.launch_configurations.get("launch-prefix", "")))
+        else:
+            prefix = []
+        if prefix and is_terminal(prefix[0]) and program_of(prefix[0], context) is None:
+            context.steps.append(Log(WITHOUT_TERMINAL.format(program, prefix[0]), "WARN"))
             return []
-        return shlex.split(str(context.launch_configurations.get("launch-prefix", "")))
+        return prefix
 
     def _ExecuteLocal__environment(self, context: LaunchContext) -> dict[str, str]:
         described = self.process_description

@@ -333,7 +333,7 @@ class Command(Substitution):
         program = program_of(words[0], context)
         if program is None:
             raise SubstitutionFailure(f"command {line!r}: {missing_program(words[0])}")
-        options = () if context.left_out is None else ("--stand-ins",)
+        options = ("--stand-ins",) if context.skips_missing else ()
         try:
             process = subprocess.Popen(  # noqa: S603  # the command of the user's file
                 [*context.packages.starter(Path(program), options), *words[1:]],

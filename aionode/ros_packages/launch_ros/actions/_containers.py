@@ -72,9 +72,9 @@ class ComposableNodeContainer(Node):
         """
         foreign = [each for each in components if not each.is_aionode]
         known = [each.package for each in foreign if remark_on(each.package)]
-        if context.left_out is None and known:
+        if known and not context.skips_missing:
             raise here().not_found(known[0]) from None
-        if context.left_out is None or not foreign:
+        if not (foreign and context.skips_missing):
             raise error
         for each in foreign:
             package = each.package if each.package in known else error.name

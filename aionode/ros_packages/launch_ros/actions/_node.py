@@ -14,6 +14,7 @@ from launch.launch_context import LaunchContext
 from launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
+    perform_substitutions,
 )
 from launch_ros.namespaces import joined, namespace_in, text_or_none
 from launch_ros.node_arguments import parameter_arguments, remap_pairs
@@ -67,14 +68,14 @@ class Node(ExecuteProcess):
         """Return whether the description specifies both the node's name and its namespace."""
         return "<" not in self.node_name
 
-    def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
-        """Return the path of the executable, and the arguments."""
-        executable, *arguments = super()._ExecuteLocal__executable_words(context)
+    def _ExecuteLocal__program_words(self, context: LaunchContext, program: list[Any]) -> list[str]:
+        """Return the command that starts the executable."""
+        executable = perform_substitutions(context, program)
         self._Node__program_name = Path(executable).name.rpartition(":")[2]
         if self.node_package is None:
-            return [*command_of(executable), *arguments]
+            return command_of(executable)
         package = text_or_none(context, self.node_package) or ""
-        return [*context.packages.command(package, executable), *arguments]
+        return context.packages.command(package, executable)
 
     def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the executable, or of the class."""
