@@ -305,7 +305,7 @@ TOKENS = {
     "a publisher of another node": (token("MP", "talker", "%scan"), REFUSED),
     "another subscription": (token("MS", "visitor", "%chatter"), REFUSED),
     "a server": (token("SS", "visitor", "%dock"), REFUSED),
-    "that a context acknowledges": (f"@aionode/7/{TALKER}/reliable/2", REFUSED),
+    "that a context acknowledges": (f"@aionode/7/{TALKER}/reliable/3", REFUSED),
     "a context that can be linked": (f"@aionode/7/{TALKER}/link/3/a/0", REFUSED),
     "that there are unannounced peers": (f"@aionode/7/{TALKER}/strangers", REFUSED),
 }

@@ -25,7 +25,7 @@ __all__ = [
     "unpack",
 ]
 
-VERSION: Final = 2
+VERSION: Final = 3
 """Contexts of different versions do not acknowledge each other's messages."""
 
 MAX_RANGES: Final = 64

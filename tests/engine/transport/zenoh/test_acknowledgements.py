@@ -356,10 +356,10 @@ async def test_a_context_of_another_version_counts_as_one_that_does_not_acknowle
                 liveliness.declare_token(
                     f"@aionode/{DOMAIN_ID}/{version}{version}/reliable/{version}"
                 )
-                for version in (1, 2)
+                for version in (1, 2, 3)
             ]
             await until(lambda: known.participants)
-            assert known.participants == {"22"}
+            assert known.participants == {"33"}
             for token in tokens:
                 token.undeclare()
 

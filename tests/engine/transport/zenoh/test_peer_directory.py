@@ -257,7 +257,7 @@ async def test_nothing_is_declared_without_an_advertisement() -> None:
             keys = [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
 
             # That it acknowledges messages has nothing to do with links.
-            assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/2"]
+            assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/3"]
         assert (peer_directory._declared, peer_directory._unknown, told.told) == ([], set(), [])
 
 
