@@ -539,11 +539,10 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _hear_out(self) -> None:
         """Wait for feedback that the result has overtaken."""
         if self._is_remote():
-            loop = asyncio.get_running_loop()
-            over = loop.create_future()
-            alarm = loop.call_later(LAST_FEEDBACK_S, over.set_result, None)
+            over = asyncio.Event()  # not a future, which cannot be set once this is cancelled
+            alarm = asyncio.get_running_loop().call_later(LAST_FEEDBACK_S, over.set)
             try:
-                await over
+                await over.wait()
             finally:
                 alarm.cancel()
         for _ in range(TURNS_FOR_FEEDBACK):

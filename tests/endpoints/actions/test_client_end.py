@@ -11,6 +11,8 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
+from aionode.clock import perf_ns
+from aionode.endpoints.actions.client import LAST_FEEDBACK_S
 from aionode.engine.context import Context
 from aionode.errors import EntityDestroyedError
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -354,3 +356,28 @@ async def test_a_node_that_fails_can_still_await_a_goal_in_finally(program: Prog
     a_callback_fails(program)
 
     assert list((await results.get()).sequence) == [0, 1, 2]
+
+
+@pytest.mark.parametrize("ends", ["link"], indirect=True)
+async def test_a_client_may_end_when_its_wait_for_late_feedback_does(program: Program) -> None:
+    """In one iteration of the loop, after a result from another process."""
+    errors: list[dict[str, Any]] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _loop, error: errors.append(error))
+    program.worker.may_end.set()
+    for turns in range(4):  # one of them is the number in which its tasks are cancelled
+        client: Client = program.node.create_action_client(Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        await client.call(Fibonacci.Goal())
+        for _ in range(3):  # by then it waits for feedback
+            await checkpoint()
+
+        client.destroy()
+        for _ in range(turns):
+            await checkpoint()
+        over_ns = perf_ns() + round(1e9 * LAST_FEEDBACK_S)
+        while perf_ns() < over_ns:  # nothing else runs
+            pass
+        for _ in range(4):
+            await checkpoint()
+
+    assert errors == []
