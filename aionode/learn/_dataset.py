@@ -77,7 +77,13 @@ class Episode:
 
 
 def write_dataset(out: Path, contract: Contract, episodes: list[Episode], codec: str) -> None:
-    """Put a data set together from episodes, in the order given."""
+    """Put a data set together from episodes, in the order given.
+
+    What an interrupted export left is removed: it may be of other episodes.
+    """
+    (out / INFO).unlink(missing_ok=True)
+    for name in ("data", "meta", "videos"):
+        shutil.rmtree(out / name, ignore_errors=True)
     tasks = list(dict.fromkeys(each.task for each in episodes))
     (out / INFO).parent.mkdir(parents=True, exist_ok=True)
     rows = Rows(out, tasks)

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode import bag
+from aionode import __version__, bag
+from aionode.bag.files.lock import FolderLock
 from aionode.bag.files.metadata import FILE_NAME
 from aionode.errors import BagError, DatasetError
 from aionode.learn._dataset import INFO, Episode, check_dataset, write_dataset
@@ -104,13 +105,14 @@ def export(
     Raises:
         BagError: one of them is no bag, or is being recorded (a ValueError).
         ContractError: a contract is not valid (a ValueError).
-        DatasetError: the folder has a data set, no contract fits, no bag has a row, or the data set
-            cannot be read back (a ValueError).
+        DatasetError: the folder has a data set or other files, no contract fits, no bag has a row,
+            or the data set cannot be read back (a ValueError).
     """
     place = Path(out)
-    if (place / INFO).exists():
-        raise DatasetError(str(out), "it is there already", "give another name, or remove it")
-    paths = [path for each in bags for path in bags_in(Path(each))]
+    check_place(place)
+    paths = list(
+        {os.path.realpath(path): path for each in bags for path in bags_in(Path(each))}.values()
+    )
     removed = {str(path): repair(path) for path in paths}
     wanted = [path for path in paths if failures or not failed(path)]
     if not wanted:
@@ -125,32 +127,77 @@ def export(
     jobs = jobs or max(processors // cameras, 1)
     threads = max(processors // (cameras * min(jobs, len(paths) or 1)), 1)
     planned = [job_of(place, str(path), found, task, codec, threads) for path in paths]
-    parts = list(done(planned, jobs, progress))
-    episodes = [
-        Episode(Path(job.folder), **each)
-        for job, part in zip(planned, parts, strict=True)
-        for each in part["episodes"]
-    ]
-    reports = [
-        part["report"] | {"removed_bytes": removed[job.path]}
-        for job, part in zip(planned, parts, strict=True)
-    ]
-    bounds = limits or Limits()
-    problems = {
-        report["path"]: wrong for report in reports if (wrong := over(report, bounds, found.fps))
-    }
-    if not episodes:
-        name, first = next(iter(problems.items()))
-        raise DatasetError(str(out), f"no bag has a row; {name}: {'; '.join(first)[:1000]}")
-    write_dataset(place, found, episodes, codec)
-    wrong = check_dataset(place)
-    if wrong:
-        (place / INFO).unlink()
-        raise DatasetError(str(out), f"it cannot be read back: {'; '.join(wrong[:5])}")
-    (place / REPORT).write_text(json.dumps(reports, indent=1))
-    shutil.rmtree(place / PARTS)
+    with lock_of(place):
+        parts = list(done(planned, jobs, progress))
+        episodes = [
+            Episode(Path(job.folder), **each)
+            for job, part in zip(planned, parts, strict=True)
+            for each in part["episodes"]
+        ]
+        reports = [
+            part["report"] | {"removed_bytes": removed[job.path]}
+            for job, part in zip(planned, parts, strict=True)
+        ]
+        bounds = limits or Limits()
+        wrong = {each["path"]: over(each, bounds, found.fps) for each in reports}
+        problems = {path: lines for path, lines in wrong.items() if lines}
+        if not episodes:
+            name, first = next(iter(problems.items()))
+            raise DatasetError(str(out), f"no bag has a row; {name}: {'; '.join(first)[:1000]}")
+        complete(place, found, episodes, codec, reports)
     rows = sum(each.rows for each in episodes)
     return Exported(str(out), len(episodes), rows, reports, problems, found.fps, bounds)
+
+
+def complete(
+    place: Path,
+    contract: Contract,
+    episodes: list[Episode],
+    codec: str,
+    reports: list[dict[str, Any]],
+) -> None:
+    """Put a data set together, and read it back; then its parts are not needed any more.
+
+    Raises:
+        DatasetError: it cannot be read back (a ValueError).
+    """
+    write_dataset(place, contract, episodes, codec)
+    wrong = check_dataset(place)
+    if wrong:
+        (place / INFO).unlink(missing_ok=True)
+        raise DatasetError(str(place), f"it cannot be read back: {'; '.join(wrong[:5])}")
+    (place / REPORT).write_text(json.dumps(reports, indent=1))
+    shutil.rmtree(place / PARTS)
+
+
+def check_place(place: Path) -> None:
+    """Raise the error for a folder that is not for this data set.
+
+    Raises:
+        DatasetError: it has a data set, or files that no interrupted export left (a ValueError).
+    """
+    if place.exists() and not place.is_dir():
+        raise DatasetError(str(place), "a file has this name", "give another one")
+    if (place / PARTS).is_dir() or not place.is_dir():
+        return
+    if (place / INFO).exists():
+        raise DatasetError(str(place), "it is there already", "give another name, or remove it")
+    if any(place.iterdir()):
+        raise DatasetError(str(place), "the folder has other files", "give the name of a new one")
+
+
+def lock_of(place: Path) -> FolderLock:
+    """Return a lock that keeps other exports out of a folder.
+
+    Raises:
+        DatasetError: another one is at work (a ValueError).
+    """
+    (place / PARTS).mkdir(parents=True, exist_ok=True)
+    try:
+        return FolderLock(place / PARTS)
+    except BagError as error:
+        problem = "another export is writing it"
+        raise DatasetError(str(place), problem, "wait until it has ended") from error
 
 
 def bags_in(path: Path) -> list[Path]:
@@ -238,7 +285,9 @@ def job_of(place: Path, path: str, contract: Contract, task: str, codec: str, th
         for each in files
         if each.is_file()
     ]
-    words = json.dumps([os.path.realpath(path), given, task, codec, marks], sort_keys=True)
+    words = json.dumps(
+        [__version__, os.path.realpath(path), given, task, codec, marks], sort_keys=True
+    )
     name = hashlib.sha256(words.encode()).hexdigest()[:16]
     return Job(path, given, str(place / PARTS / name), task, codec, threads)
 

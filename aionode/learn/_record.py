@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import re
 import shutil
 from collections.abc import Iterable
@@ -164,6 +165,12 @@ class Episodes:
         )
 
     async def __aenter__(self) -> Self:
+        """Create the folder, and be ready to record.
+
+        Raises:
+            EpisodeError: there can be no episodes in the folder (a RuntimeError).
+        """
+        self._check_folder()
         async with AsyncExitStack() as stack:
             await stack.enter_async_context(self.node)
             self._tasks = await stack.enter_async_context(asyncio.TaskGroup())
@@ -279,6 +286,22 @@ class Episodes:
         except BagWriteError as error:
             self._failure = error
             self._failed.set()
+
+    def _check_folder(self) -> None:
+        """Create the folder.
+
+        Raises:
+            EpisodeError: it cannot be created, or written (a RuntimeError).
+        """
+        problem = "a file has this name" if self.folder.is_file() else ""
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            problem = problem or error.strerror or str(error)
+        if not problem and not os.access(self.folder, os.W_OK | os.X_OK):
+            problem = "it cannot be written"
+        if problem:
+            raise EpisodeError(f"no folder {self.folder}: {problem}; give another one")
 
     def _next_path(self) -> Path:
         """Return the folder of the next episode."""

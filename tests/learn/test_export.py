@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import re
 import shutil
+import signal
+import subprocess
+import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -306,6 +310,79 @@ def test_a_data_set_is_not_overwritten(tmp_path: Path) -> None:
     dataset(tmp_path, bag)
     with pytest.raises(DatasetError, match="it is there already; give another name"):
         dataset(tmp_path, bag)
+
+
+def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
+    """A data set among them could not be removed as a whole, and might replace some."""
+    bag = demonstration(tmp_path / "run", length_sec=0.5)
+    kept = tmp_path / "out/data/precious"
+    kept.parent.mkdir(parents=True)
+    kept.touch()
+    with pytest.raises(DatasetError, match="the folder has other files; give the name of a new"):
+        dataset(tmp_path, bag)
+    assert [each for each in (tmp_path / "out").rglob("*") if each.is_file()] == [kept]
+    with pytest.raises(DatasetError, match="a file has this name"):
+        export(kept, [bag], contract=contract())
+
+
+def test_a_bag_that_is_given_twice_is_exported_once(tmp_path: Path) -> None:
+    """As one of its folder, and by its name: its episodes would count double."""
+    bag = demonstration(tmp_path / "runs/a", length_sec=0.5)
+    assert len(dataset(tmp_path, tmp_path / "runs", bag).episodes) == 1
+
+
+def test_two_exports_do_not_write_one_folder(tmp_path: Path) -> None:
+    """The second one would replace files that the first one writes."""
+    bag = demonstration(tmp_path / "run", length_sec=0.5)
+
+    def again(done: int, whole: int) -> None:
+        del done, whole
+        with pytest.raises(DatasetError, match="another export is writing it; wait until it has"):
+            export(tmp_path / "out", [bag], contract=contract(), jobs=1)
+
+    found = export(tmp_path / "out", [bag], contract=contract(), jobs=1, progress=again)
+    assert found.rows == 13
+
+
+KILLED = textwrap.dedent("""
+    import os, signal, sys
+    from aionode.learn import _export, export
+    from tests.support.demonstrations import contract
+
+    place, out, codec, *bags = sys.argv[1:]
+    count = 0
+
+    def die(*_):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    def progress(done, whole):
+        if place.isdigit() and done >= int(place) / 100 * whole:
+            die()
+
+    if not place.isdigit():
+        setattr(_export, place, die)
+    export(out, bags, contract=contract(), codec=codec, jobs=1, progress=progress)
+""")
+
+
+@pytest.mark.processes
+@pytest.mark.parametrize("place", ["10", "45", "70", "write_dataset", "check_dataset"])
+def test_an_export_that_was_killed_goes_on(tmp_path: Path, place: str) -> None:
+    """Wherever it was, also with another codec and other bags than before: they leave nothing."""
+    bags = [
+        demonstration(tmp_path / f"run{number}", length_sec=0.5, seed=number) for number in range(3)
+    ]
+    out = tmp_path / "out"
+    for codec in ("av1", "h264"):
+        killed = subprocess.run(
+            [sys.executable, "-c", KILLED, place, out, codec, *bags], check=False
+        )
+        assert killed.returncode == -signal.SIGKILL
+    assert export(out, bags[:2], contract=contract(), jobs=1).rows == 26
+    assert check_dataset(out) == []
+    assert len(list(out.rglob("*.mp4"))) == 2
+    assert sorted(each.name for each in out.iterdir()) == ["data", "meta", "videos"]
+    assert Reader(out).info["features"][CAMERA]["info"]["video.codec"] == "h264"
 
 
 def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:

@@ -246,6 +246,18 @@ async def test_an_episode_without_a_task_is_refused(tmp_path: Path) -> None:
                 await silent.start()
 
 
+@pytest.mark.parametrize("given", ["file", "file/runs"])
+async def test_a_folder_that_cannot_be_is_told_before_anything_is_recorded(
+    tmp_path: Path, given: str
+) -> None:
+    """Whoever demonstrates has prepared the robot, and would notice it at the first key."""
+    (tmp_path / "file").touch()
+    async with local_context() as context:
+        with pytest.raises(EpisodeError, match=rf"no folder \S+{given}: .*; give another one"):
+            async with Episodes(tmp_path / given, contract(), context=context):
+                pass
+
+
 async def test_what_was_recorded_is_exported(tmp_path: Path) -> None:
     """With the contract and the task of the recording."""
     clock = ManualClock(Time(nanoseconds=START_NS))
