@@ -18,6 +18,7 @@ from aionode.node import direct_subscription
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
+    from aionode.learn._alignment import Series
     from aionode.learn.contract import Action, Contract, Observation
     from aionode.node import Node
 
@@ -78,7 +79,7 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
         for subscription in subscriptions:
             subscription.destroy()
     series = [each.series() for each in collected]
-    rows = aligned(contract, series)
+    rows = aligned(contract, heard_together(contract, series))
     topics = [
         topic_of(contract, entry, each, rows, position)
         for position, (entry, each) in enumerate(zip(contract.entries, series, strict=True))
@@ -110,6 +111,22 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
         f"{name}: observed {lag * 1e3:.0f} ms after its command" for name, lag in followed.items()
     ]
     return Checked(topics, "\n".join(lines), problems)
+
+
+def heard_together(contract: Contract, series: list[Series]) -> list[Series]:
+    """Return the messages with those of the reference only for which there could be all others.
+
+    What is slow to arrive is not missing, but at the ends of what was heard it seems to be.
+    """
+    heard = [each.times for each in series if len(each.times)]
+    if not heard:
+        return series
+    first, last = max(each[0] for each in heard), min(each[-1] for each in heard)
+    position = contract.entries.index(contract.main)
+    times = series[position].times
+    found = list(series)
+    found[position] = series[position].only((first <= times) & (times <= last))
+    return found
 
 
 def take(

@@ -275,7 +275,7 @@ def trouble_of(
                 f"{name}: {topic['rate_hz']:.1f} Hz, and fps is {contract.fps}; set the camera's "
                 "rate, or fps"
             )
-    elif topic["stale"] > Limits().dropped * rows:
+    elif topic["messages"] and topic["stale"] > Limits().dropped * rows:
         found.append(stale_text(topic | {"topic": name}))
     return found
 
@@ -319,7 +319,10 @@ def text_of(report: dict[str, Any], limits: Limits, fps: int) -> str:
 def topic_text(topic: dict[str, Any], rows: int) -> str:
     """Return one line about a topic."""
     if not topic["messages"]:
-        return f"{topic['topic']} ({topic['feature']}): no messages"
+        there = f"{counted(topic['invalid'], 'message')}, none of which fits"
+        return (
+            f"{topic['topic']} ({topic['feature']}): {there if topic['invalid'] else 'no messages'}"
+        )
     parts = [f"{counted(topic['messages'], 'message')} at {topic['rate_hz']:.1f} Hz"]
     if topic["is_main"]:
         parts.append("each makes a row")

@@ -371,6 +371,42 @@ async def test_a_check_names_a_camera_of_another_rate() -> None:
     assert found.problems == ["/camera0: 30.0 Hz, and fps is 50; set the camera's rate, or fps"]
 
 
+async def test_a_check_names_numbers_that_are_not_there_and_not_that_they_are_old() -> None:
+    """The rate of a topic of which nothing fits is no help."""
+    observations = contract().to_dict()["observations"]
+    observations[1]["fields"] = ["position.elbow", "velocity.joint"]
+    found = await checked(stamped(observations=observations))
+    assert len(found.problems) == 1
+    assert "/joint_states (observation.state): 30 messages, none of which fits" in found.text
+
+
+async def test_a_check_does_not_take_what_is_slow_to_arrive_for_missing() -> None:
+    """In the end of what it heard there are pictures whose joints are on their way."""
+    clock = ManualClock(Time(nanoseconds=START_NS))
+    async with local_context(clock=clock) as context:
+        robot = Robot(context)
+        async with (
+            robot.node,
+            Node("checker", context=context) as node,
+            asyncio.TaskGroup() as tasks,
+        ):
+            checking = tasks.create_task(check(node, stamped(), 0.3))
+            await settle()
+            for number in range(30):
+                at_ns = START_NS - (30 - number) * 10**9 // 30
+                shown = image.from_numpy(picture(0), "rgb8")
+                shown.header.stamp = stamp(at_ns)
+                state = JointState(name=["joint"], position=[0.0], velocity=[0.0])
+                state.header.stamp = stamp(at_ns)
+                robot.camera.publish(shown)
+                robot.commands.publish(state)
+                if number < 24:  # the others are 0.2 s late
+                    robot.joints.publish(state)
+                await settle()
+            await clock.advance(0.3)
+    assert checking.result().problems == []
+
+
 async def test_a_check_names_what_fell_silent() -> None:
     """A robot that froze or was killed meanwhile has good rates up to then."""
     found = await checked(stamped(), length_sec=3.0)

@@ -90,6 +90,10 @@ def record_command(
             folder, read, task=task, topics=topics, context=Context(), node_name=node_name
         )
         async with episodes, asyncio.TaskGroup() as tasks:
+            name = episodes.node.get_fully_qualified_name()
+            episodes.node.get_logger().info(
+                f"Ready to record into {folder}: SPACE or {name}/start starts an episode"
+            )
             with keys_pressed(episode_keys(episodes, tasks), wanted=True):
                 async with progress_shown(lambda: episodes.text, 3):
                     await episodes.failed()
