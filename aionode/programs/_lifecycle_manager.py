@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable
 from typing import Any, Final
 
 import aionode
@@ -100,77 +101,130 @@ class Manager(Node):
         response.success = self.state == "active"
         return response
 
-    async def change(self, label: str, doing: str, *, reverse: bool = False) -> bool:
-        """Request a transition from all nodes; return whether all succeeded."""
+    async def change(
+        self, label: str, doing: str, *, reverse: bool = False, goes_on: bool = False
+    ) -> bool:
+        """Request a transition from all nodes; return whether all succeeded.
+
+        The first failure ends it, unless it `goes_on`.
+        """
+        is_done = True
         for name in reversed(self.names) if reverse else self.names:
             self.get_logger().info(f"{doing} {name}")
             try:
                 await self.manager.change_state(name, label)
             except AionodeError as error:
                 self.get_logger().error(f"Failed to change state for node: {name}. {error}")
-                self.tell("unknown")
-                return False
-        return True
+                is_done = False
+                if not goes_on:
+                    break
+        return is_done
+
+    async def carry_out(
+        self, state: str, doing: Awaitable[bool], begun: str, done: str, failed: str
+    ) -> bool:
+        """Await a step, log how it goes, and publish the state of the nodes afterwards."""
+        self.get_logger().info(begun)
+        if await doing:
+            self.get_logger().info(done)
+            self.tell(state)
+            return True
+        self.get_logger().error(failed)
+        self.tell("unknown")
+        return False
 
     async def startup(self) -> bool:
         """Configure and activate all nodes."""
-        log = self.get_logger()
-        log.info("Starting managed nodes bringup...")
-        done = await self.change("configure", "Configuring") and await self.change(
-            "activate", "Activating"
+        return await self.carry_out(
+            "active",
+            self.bring_up(),
+            "Starting managed nodes bringup...",
+            "Managed nodes are active",
+            "Failed to bring up all requested nodes. Aborting bringup.",
         )
-        if done:
-            log.info("Managed nodes are active")
-            self.tell("active")
-        else:
-            log.error("Failed to bring up all requested nodes. Aborting bringup.")
-        return done
 
     async def configure(self) -> bool:
         """Configure all nodes."""
-        done = await self.change("configure", "Configuring")
-        return self.concluded(done, "inactive", "configured")
+        return await self.carry_out(
+            "inactive",
+            self.change("configure", "Configuring"),
+            "Configuring managed nodes...",
+            "Managed nodes are now configured",
+            "Failed to configure all requested nodes. Aborting bringup.",
+        )
 
     async def cleanup(self) -> bool:
         """Clean all nodes up."""
-        done = await self.change("cleanup", "Cleaning up", reverse=True)
-        return self.concluded(done, "unconfigured", "cleaned up")
+        return await self.carry_out(
+            "unconfigured",
+            self.change("cleanup", "Cleaning up", reverse=True),
+            "Cleaning up managed nodes...",
+            "Managed nodes have been cleaned up",
+            "Failed to cleanup all requested nodes. Aborting cleanup.",
+        )
 
     async def pause(self) -> bool:
         """Deactivate all nodes."""
-        done = await self.change("deactivate", "Deactivating", reverse=True)
-        return self.concluded(done, "inactive", "paused")
+        return await self.carry_out(
+            "inactive",
+            self.change("deactivate", "Deactivating", reverse=True),
+            "Pausing managed nodes...",
+            "Managed nodes have been paused",
+            "Failed to pause nodes: aborting pause",
+        )
 
     async def resume(self) -> bool:
         """Activate all nodes."""
-        done = await self.change("activate", "Activating")
-        return self.concluded(done, "active", "resumed")
+        return await self.carry_out(
+            "active",
+            self.change("activate", "Activating"),
+            "Resuming managed nodes...",
+            "Managed nodes are active",
+            "Failed to resume nodes: aborting resume",
+        )
 
     async def reset(self) -> bool:
         """Bring all nodes down, from any state."""
+        return await self.carry_out(
+            "unconfigured",
+            self.bring_down(),
+            "Resetting managed nodes...",
+            "Managed nodes have been reset",
+            "Failed to reset nodes: aborting reset",
+        )
+
+    async def shutdown(self) -> bool:
+        """Bring all nodes down from any state, and finalize those that are there."""
+        return await self.carry_out(
+            "finalized",
+            self.finalize(),
+            "Shutting down managed nodes...",
+            "Managed nodes have been shut down",
+            "Failed to shut down all nodes",
+        )
+
+    async def bring_up(self) -> bool:
+        """Configure, then activate all nodes."""
+        return await self.change("configure", "Configuring") and await self.change(
+            "activate", "Activating"
+        )
+
+    async def bring_down(self) -> bool:
+        """Deactivate and clean up what is active or inactive."""
         try:
             await self.manager.reset()
         except ExceptionGroup as group:
-            self.get_logger().error(f"Failed to reset nodes: {group.exceptions[0]}")
-            self.tell("unknown")
+            for error in group.exceptions:
+                self.get_logger().error(f"Failed to change state: {error}")
             return False
-        return self.concluded(True, "unconfigured", "reset")
+        return True
 
-    async def shutdown(self) -> bool:
-        """Bring all nodes down, and finalize them."""
-        done = await self.reset()
-        return self.concluded(
-            done and await self.change("shutdown", "Shutting down", reverse=True),
-            "finalized",
-            "shut down",
+    async def finalize(self) -> bool:
+        """Bring all nodes down and finalize them; one that is gone does not spare the others."""
+        is_down = await self.bring_down()
+        return (
+            await self.change("shutdown", "Shutting down", reverse=True, goes_on=True) and is_down
         )
-
-    def concluded(self, done: bool, state: str, what: str) -> bool:
-        """Log the end of a step, and return whether it succeeded."""
-        if done:
-            self.get_logger().info(f"Managed nodes have been {what}")
-            self.tell(state)
-        return done
 
     async def watch(self) -> None:
         """Bring all nodes down if one is lost, and up again if all return in time."""

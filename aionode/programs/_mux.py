@@ -19,6 +19,9 @@ NONE_TOPIC: Final = "__none"
 """The name that selects no topic."""
 
 
+MAX_TOPICS: Final = 1000
+
+
 def services_of(tool: str) -> dict[str, Any]:
     """Return the service types of ``mux`` or ``demux``, by their names below the node's name."""
     prefix = f"topic_tools_interfaces/srv/{tool.capitalize()}"
@@ -97,6 +100,8 @@ class Selector(AnyTypeNode):
             log.warning(
                 f"failed to add topic {topic} to {self.tool}, because it's reserved for special use"
             )
+        elif len(self.topics) >= MAX_TOPICS:
+            log.warning(f"failed to add topic {topic} to {self.tool}, which has {MAX_TOPICS}")
         elif topic in self.topics:
             log.warning(
                 f"tried to add a topic that {self.tool} was already listening to: [{topic}]"

@@ -15,9 +15,16 @@ from aionode.arguments import remove_ros_args
 from aionode.errors import AionodeError, CommandError
 from aionode.interfaces import get_message
 from aionode.programs._wall_timer import create_wall_timer
-from aionode.qos import qos_profile_sensor_data
+from aionode.qos import HistoryPolicy, QoSPresetProfiles, qos_profile_sensor_data
 
-__all__ = ["Transform", "add_qos", "main", "parser"]
+__all__ = ["Transform", "add_qos", "chosen_qos", "main", "parser"]
+
+POLICIES: dict[str, Any] = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+}
+"""The QoS policies that have their own option."""
 
 SEARCH_SEC = 0.1
 """How often the type of the input is looked up."""
@@ -75,21 +82,9 @@ class Transform(Node):
         except (AionodeError, LookupError) as error:
             raise CommandError(f"Wrong input topic: {self.arguments.input}: {error}") from None
         self.timer.cancel()
-        offered = [each.qos_profile for each in publishers]
-        reliable = all(each.reliability is ReliabilityPolicy.RELIABLE for each in offered)
-        latched = all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
-        given = self.arguments
-        qos = QoSProfile(
-            depth=given.qos_depth or qos_profile_sensor_data.depth,
-            reliability=ReliabilityPolicy[
-                (given.qos_reliability or ("reliable" if reliable else "best_effort")).upper()
-            ],
-            durability=DurabilityPolicy[
-                (given.qos_durability or ("transient_local" if latched else "volatile")).upper()
-            ],
-        )
-        self.output = self.create_publisher(self.type, given.output_topic, qos)
-        self.create_subscription(message, given.input, self.on_message, qos)
+        qos = chosen_qos(self.arguments, [each.qos_profile for each in publishers])
+        self.output = self.create_publisher(self.type, self.arguments.output_topic, qos)
+        self.create_subscription(message, self.arguments.input, self.on_message, qos)
 
     def on_message(self, message: Any) -> None:
         """Publish the value of the expression for a message."""
@@ -139,9 +134,34 @@ def add_qos(found: argparse.ArgumentParser) -> None:
     found.add_argument(
         "--wait-for-start", action="store_true", help="Accepted: the input is always waited for."
     )
+    found.add_argument(
+        "--qos-profile",
+        choices=QoSPresetProfiles.short_keys(),
+        help="Preset to start from, if any of these options is given (default: sensor_data).",
+    )
     found.add_argument("--qos-depth", type=int, metavar="N")
-    found.add_argument("--qos-reliability", choices=["reliable", "best_effort"])
-    found.add_argument("--qos-durability", choices=["volatile", "transient_local"])
+    for name, kind in POLICIES.items():
+        found.add_argument(f"--qos-{name}", choices=kind.short_keys())
+
+
+def chosen_qos(given: argparse.Namespace, offered: list[QoSProfile]) -> QoSProfile:
+    """Return the QoS of the options, or else one that is compatible with all offers."""
+    policies = {name: getattr(given, f"qos_{name}") for name in POLICIES}
+    if given.qos_profile or given.qos_depth is not None or any(policies.values()):
+        qos = QoSPresetProfiles.get_from_short_key(given.qos_profile or "sensor_data").replace()
+        for name, value in policies.items():
+            if value is not None:
+                setattr(qos, name, POLICIES[name].get_from_short_key(value))
+        if given.qos_depth is not None:
+            qos.depth = given.qos_depth
+        return qos
+    reliable = all(each.reliability is ReliabilityPolicy.RELIABLE for each in offered)
+    latched = all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
+    return QoSProfile(
+        depth=qos_profile_sensor_data.depth,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+    )
 
 
 def main() -> None:

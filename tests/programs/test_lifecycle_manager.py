@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any
 
@@ -138,6 +139,47 @@ async def test_a_node_that_refuses_ends_the_start(
     err = capfd.readouterr().err
     assert "Failed to change state for node: planner" in err
     assert "Failed to bring up all requested nodes. Aborting bringup." in err
+
+
+async def test_each_command_is_logged_in_the_words_of_nav2(
+    robot: Robot, start: Start, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Tools and people look for these lines."""
+    start(Manager, **NAMES)
+    await settle()
+    for command in ("CONFIGURE", "CLEANUP", "STARTUP", "PAUSE", "RESUME", "RESET", "SHUTDOWN"):
+        assert await robot.command(getattr(Command, command))
+
+    said = [line.partition("]: ")[2] for line in capfd.readouterr().err.splitlines()]
+    assert [line for line in said if "anaged nodes" in line] == [
+        *("Configuring managed nodes...", "Managed nodes are now configured"),
+        *("Cleaning up managed nodes...", "Managed nodes have been cleaned up"),
+        *("Starting managed nodes bringup...", "Managed nodes are active"),
+        *("Pausing managed nodes...", "Managed nodes have been paused"),
+        *("Resuming managed nodes...", "Managed nodes are active"),
+        *("Resetting managed nodes...", "Managed nodes have been reset"),
+        *("Shutting down managed nodes...", "Managed nodes have been shut down"),
+    ]
+
+
+async def test_a_node_that_is_gone_does_not_keep_the_others_from_their_shutdown(
+    robot: Robot, start: Start, manual_clock: ManualClock
+) -> None:
+    """The answer says that not all were shut down."""
+    start(Manager, **NAMES, autostart=True, bond_timeout=0.0, service_timeout=0.5)
+    await manual_clock.advance(0.1)
+    await settle()
+    robot.servers["planner"].destroy_node()
+    await settle()
+
+    async with asyncio.TaskGroup() as tasks:
+        task = tasks.create_task(robot.command(Command.SHUTDOWN))
+        while not task.done():
+            await manual_clock.advance(0.5)
+            await settle()
+
+    assert not task.result()
+    assert robot.story[-1] == "shutdown map"
 
 
 async def test_a_node_that_goes_brings_all_down_and_one_that_comes_back_all_up(

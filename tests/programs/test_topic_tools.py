@@ -20,7 +20,7 @@ from aionode.programs._relay import Relay
 from aionode.programs._relay_field import RelayField
 from aionode.programs._relay_field import parser as relay_field_parser
 from aionode.programs._throttle import Throttle
-from aionode.programs._transform import Transform, parser
+from aionode.programs._transform import Transform, chosen_qos, parser
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
@@ -197,7 +197,10 @@ async def test_delay_publishes_each_message_later(
 
 
 async def test_mux_publishes_the_input_that_is_selected(
-    bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
+    bench: Bench,
+    start: Start,
+    ready: Callable[[], Awaitable[None]],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The first at the beginning; services change that, as those of the original."""
     one = bench.node.create_publisher(String, "one", 10)
@@ -225,6 +228,8 @@ async def test_mux_publishes_the_input_that_is_selected(
     assert not (await ask("select", topic="three")).success
     assert (await ask("add", topic="three")).success
     assert not (await ask("add", topic="three")).success
+    monkeypatch.setattr("aionode.programs._mux.MAX_TOPICS", 3)
+    assert not (await ask("add", topic="four")).success
     assert (await ask("delete", topic="one")).success
     assert list((await ask("list")).topics) == ["two", "three"]
     assert bench.heard == ["a", "d"]
@@ -250,6 +255,26 @@ async def test_transform_publishes_what_an_expression_makes_of_messages(
     await settle()
 
     assert norms == [2.0]
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ([], (5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)),
+        (["--qos-depth", "2"], (2, ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)),
+        (["--qos-profile", "services_default", "--qos-history", "keep_last"],
+         (10, ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)),
+        (["--qos-reliability", "reliable", "--qos-durability", "transient_local"],
+         (5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)),
+    ],
+)  # fmt: skip
+def test_options_give_the_qos_of_transform(options: list[str], expected: Any) -> None:
+    """Without any it is that of the publishers; with one, the rest is of sensor_data."""
+    given = parser().parse_args(["/a", "/b", "std_msgs/String", "m", *options])
+
+    found = chosen_qos(given, [QoSProfile(depth=1)])
+
+    assert (found.depth, found.reliability, found.durability) == expected
 
 
 @pytest.mark.parametrize(

@@ -143,6 +143,7 @@ async def test_diagnostics_say_who_is_heard(
 
     values = {each.key: each.value for each in people.statuses[-1].values}
     assert values["current source"] == "topics.navigation"
+    assert values["loop time in [sec]"] == values["data age in [sec]"] == "0"
     assert values["velocity topics.joystick"].startswith("masked (listening to joy_vel")
     assert values["lock locks.pause"].startswith("free")
 
