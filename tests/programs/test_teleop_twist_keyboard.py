@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from aionode import Clock, ClockType
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.programs._teleop_twist_keyboard import MOVES, Keys, Teleop
@@ -169,10 +170,14 @@ class Wheels(aionode.Node):
     def hear(self, twist):
         if twist.linear.x != self.told:
             self.told = twist.linear.x
-            print("speed", self.told, flush=True)
+            self.tell(f"speed {self.told}")
 
     def fall_silent(self):
-        print("silence", flush=True)
+        self.tell("silence")
+
+    def tell(self, what):
+        now = aionode.Clock(aionode.ClockType.STEADY_TIME).now()
+        print(what, "at", now.nanoseconds / 1e9, flush=True)
 
 aionode.run(Wheels)
 """
@@ -210,6 +215,17 @@ def terminals() -> Iterator[Terminals]:
 IN_TERMINALS = [pytest.mark.timeout(90), pytest.mark.one_loop]
 
 
+def end(keys: Any, how: str) -> None:
+    """Let a program and its terminal go in one of several ways."""
+    if how == "closed":
+        os.close(keys.child_fd)
+    elif how in ("ctrl-c", "twice"):
+        for _ in range(2 if how == "twice" else 1):
+            keys.sendintr()
+    else:
+        os.kill(keys.pid, signal.SIGKILL if how == "sigkill" else signal.SIGSTOP)
+
+
 @pytest.mark.parametrize(
     ("how", "told"),
     [
@@ -224,20 +240,28 @@ def test_the_wheels_stop_in_whatever_way_the_program_goes(
     terminals: Terminals, how: str, told: str
 ) -> None:
     """By its lease; where it cannot say anything any more, by the silence that the base notices."""
-    keys = terminals.keys
-    if how == "ctrl-c":
-        keys.sendintr()
-        keys.expect(pexpect.EOF)
-        assert "Traceback" not in keys.before
-    elif how == "closed":
-        os.close(keys.child_fd)
-    elif how == "twice":
-        keys.sendintr()
-        keys.sendintr()
-    else:
-        os.kill(keys.pid, signal.SIGKILL if how == "sigkill" else signal.SIGSTOP)
+    end(terminals.keys, how)
 
     terminals.wheels.expect(told, timeout=10)
+    if how == "ctrl-c":
+        terminals.keys.expect(pexpect.EOF)
+        assert "Traceback" not in terminals.keys.before
+
+
+@pytest.mark.stress
+@pytest.mark.parametrize(
+    "how", [pytest.param(how, marks=IN_TERMINALS) for how in ("ctrl-c", "closed", "twice",
+                                                              "sigkill", "sigstop")]
+)  # fmt: skip
+def test_the_wheels_stop_within_half_a_second(terminals: Terminals, how: str) -> None:
+    """Measured from the end to what the base hears or notices; it needs a quiet machine."""
+    began = Clock(ClockType.STEADY_TIME).now().nanoseconds / 1e9
+    end(terminals.keys, how)
+
+    terminals.wheels.expect(r"(speed 0\.0|silence) at (\d+\.\d+)\s", timeout=10)
+    passed = float(terminals.wheels.match[2]) - began
+    print(f"{how}: {passed:.3f} s")  # noqa: T201  # the figure, with -s
+    assert passed < 0.5
 
 
 @pytest.mark.parametrize("key", [pytest.param(key, marks=IN_TERMINALS) for key in "\x1a\x1c\x13"])
