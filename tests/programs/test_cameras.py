@@ -16,6 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aionode import Parameter
 from aionode.errors import CommandError
 from aionode.image import decompress, to_numpy
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
@@ -236,6 +237,37 @@ async def test_a_file_that_is_no_video_is_said_and_tried_again(
     file.write_bytes((videos / "plain.mkv").read_bytes())
 
     assert await viewer.pictures(1)
+
+
+async def test_a_camera_may_come_later_if_its_check_is_skipped(
+    start: Start, viewer: Viewer, tmp_path: Path, videos: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Otherwise a launch file that starts before udev would have no camera."""
+    file = tmp_path / "a.mkv"
+    viewer.look(CameraInfo, "camera_info")
+    skip = {"skip_device_check": True}
+    start(UsbCam, video_device=str(file), pixel_format="rgb8", **SMALL | skip)
+    await until(lambda: "retrying until it can be opened" in capsys.readouterr().err)
+    file.write_bytes((videos / "plain.mkv").read_bytes())
+
+    assert await viewer.pictures(1)
+
+
+async def test_a_control_is_set_again_when_its_parameter_is(
+    start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in the original: people turn brightness and exposure while they look."""
+    log = tmp_path / "log"
+    tool = tmp_path / "v4l2-ctl"
+    tool.write_text(f'#!/bin/sh\necho "$@" >> {log}\n')
+    tool.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    node = start(UsbCam, video_device="/dev/null", **SMALL)
+    await until(lambda: log.exists() and "focus_auto=0" in log.read_text())
+
+    assert node.set_parameters([Parameter("brightness", value=99)])[0].successful
+
+    await until(lambda: "--device=/dev/null -c brightness=99" in log.read_text())
 
 
 async def test_controls_of_the_camera_are_those_of_usb_cam(

@@ -45,13 +45,15 @@ class Camera(Node):
         self.has_raw = True
         self.offset_ns = 0
 
-    def begin(self, calibration: Calibration, qos: QoSProfile) -> None:
-        """Start publishing.
+    def begin(
+        self, calibration: Calibration, qos: QoSProfile, *, may_come_later: bool = False
+    ) -> None:
+        """Start publishing, as soon as the camera is there if it `may_come_later`.
 
         Raises:
             CommandError: There is no camera, or no package to read it.
         """
-        check_device(self.device)
+        check_device(self.device, may_come_later=may_come_later)
         self.calibration = calibration
         self.images = self.create_publisher(Image, "image_raw", qos) if self.has_raw else None
         self.small = self.create_publisher(CompressedImage, "image_raw/compressed", qos)

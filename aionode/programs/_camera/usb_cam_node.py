@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 import aionode
-from aionode import QoSProfile
+from aionode import Parameter, QoSProfile
 from aionode.errors import CommandError
 from aionode.interfaces.std_srvs.srv import SetBool
 from aionode.programs._camera.calibration import Calibration
 from aionode.programs._camera.camera import Camera
 from aionode.programs._camera.video import FORMATS
+from aionode.programs._wall_timer import create_wall_timer
 
 __all__ = ["UsbCam", "main"]
 
@@ -26,6 +27,10 @@ SWITCHES: Final[dict[str, Any]] = {
     "auto_white_balance": True, "white_balance": 4000, "autoexposure": True, "exposure": 100,
     "autofocus": False, "focus": -1,
 }  # fmt: skip
+
+CONTROL_SEC: Final = 0.01
+TIMEOUT_SEC: Final = 5.0
+"""How long the driver of a camera may take for one control."""
 
 
 class UsbCam(Camera):
@@ -49,7 +54,9 @@ class UsbCam(Camera):
         self.device = self.declare_parameter("video_device", "/dev/video0").value
         for parameter, value in (CONTROLS | SWITCHES).items():
             self.declare_parameter(parameter, value)
-        self.declare_parameter("skip_device_check", False)
+        skips_check = self.declare_parameter("skip_device_check", False).value
+        if skips_check:
+            self.get_logger().warning("Skipping V4L2 device availability check by request.")
         if self.pixel_format not in FORMATS:
             raise CommandError(f"pixel_format is {self.pixel_format!r}; {', '.join(FORMATS)} fit")
         if min(self.size) < 1 or not 0 < self.rate < math.inf:
@@ -57,17 +64,30 @@ class UsbCam(Camera):
                 f"the camera should have {self.size} pixels at {self.rate} Hz; use numbers above 0"
             )
         self.has_raw = self.pixel_format != "mjpeg"
-        self.begin(Calibration(self, name, url), QoSProfile(depth=100))
+        qos = QoSProfile(depth=100)
+        self.begin(Calibration(self, name, url), qos, may_come_later=skips_check)
         self.get_logger().info(
             f"Starting '{name}' ({self.device}) at {self.size[0]}x{self.size[1]} via {method} "
             f"({self.pixel_format}) at {int(self.rate)} FPS"
         )
         self.create_service(SetBool, "set_capture", self.on_set_capture)
+        self.controlling = create_wall_timer(self, CONTROL_SEC, self.control_again, autostart=False)
+        self.add_post_set_parameters_callback(self.on_parameters)
 
     async def capture(self) -> None:
         """Set the controls of the camera, and publish its pictures until the node ends."""
         await asyncio.to_thread(self.control)
         await super().capture()
+
+    def on_parameters(self, parameters: list[Parameter]) -> None:
+        """Set the controls of the camera again, soon."""
+        if any(parameter.name in CONTROLS | SWITCHES for parameter in parameters):
+            self.controlling.reset()
+
+    async def control_again(self) -> None:
+        """Set the controls of the camera, once."""
+        self.controlling.cancel()
+        await asyncio.to_thread(self.control)
 
     def on_set_capture(self, request: Any, response: Any) -> Any:
         """Start or stop taking pictures."""
@@ -104,12 +124,15 @@ class UsbCam(Camera):
             return
         for name, value in self.controls().items():
             command = [program, f"--device={self.device}", "-c", f"{name}={value}"]
-            done = subprocess.run(  # noqa: S603  # a name of the table above, and a number
-                command, capture_output=True, text=True, check=False, timeout=5
-            )
             text = f"Setting '{name}' to {value}"
-            if done.returncode:
-                self.get_logger().warning(f"{text} failed: {done.stderr.strip()!r}")
+            try:
+                subprocess.run(  # noqa: S603  # a name of the table above, and a number
+                    command, capture_output=True, text=True, check=True, timeout=TIMEOUT_SEC
+                )
+            except subprocess.CalledProcessError as error:
+                self.get_logger().warning(f"{text} failed: {error.stderr.strip()!r}")
+            except (OSError, subprocess.TimeoutExpired) as error:
+                self.get_logger().warning(f"{text} failed: {error}")
             else:
                 self.get_logger().info(text)
 

@@ -56,13 +56,13 @@ class Frame(NamedTuple):
     jpeg: bytes | None
 
 
-def check_device(path: str) -> None:
-    """Refuse a camera that does not exist or cannot be read.
+def check_device(path: str, *, may_come_later: bool = False) -> None:
+    """Refuse a camera that does not exist, unless it may come later, or cannot be read.
 
     Raises:
         CommandError: There is none, or PyAV is not installed.
     """
-    if not Path(path).exists():
+    if not may_come_later and not Path(path).exists():
         there = sorted(str(each) for each in Path("/dev").glob("video*"))
         raise CommandError(
             f"video_device {path!r} does not exist; cameras here: {', '.join(there) or 'none'}; "
