@@ -11,6 +11,7 @@ from __future__ import annotations
 import io
 import re
 import struct
+from array import array
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -42,9 +43,11 @@ DEPTH_HEAD: Final = struct.Struct("<iff")
 RVL_HEAD: Final = struct.Struct("<II")
 """The width and height before an RVL picture."""
 MOST_PIXELS: Final = 2**25
-"""How many pixels an RVL picture may have, as a few bytes can stand for any number of zeros."""
-MOST_NIBBLES: Final = 10
-"""The place of the last nibble of a number of 32 bits."""
+"""Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros."""
+MOST_NIBBLES: Final = 9
+"""Maximum nibbles of a number: enough for `MOST_PIXELS` zeros."""
+BLOCK_BYTES: Final = 2**18
+"""How many bytes of RVL are unpacked at a time."""
 
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
 """The channels of colour encodings, one letter each."""
@@ -402,12 +405,13 @@ def decompress(image: CompressedImage) -> Image:
 def depths_of_rvl(data: memoryview, format: str) -> npt.NDArray[np.uint16]:  # noqa: A002  # the field's name
     """Return the picture of compressedDepth's lossless RVL.
 
-    Its numbers are nibbles of three bits each, the lowest first, of which all but the last have the
-    highest bit. They are: how many pixels are 0, how many follow that are not, and for each of
-    these the difference to the one before, with its sign as the lowest bit; and so on.
+    A number is a sequence of nibbles with three bits each, the lowest first; all but the last have
+    the highest bit set. The numbers are: how many pixels are 0, how many of the following are not,
+    and for each of these the difference to the one before, with its sign as the lowest bit; and so
+    on.
 
     Raises:
-        MessageError: The data end too early, or say that there are more pixels than are read.
+        MessageError: The data end too early, are malformed, or claim too many pixels.
     """
     wrong = MessageError(
         "sensor_msgs/msg/CompressedImage.data",
@@ -419,32 +423,56 @@ def depths_of_rvl(data: memoryview, format: str) -> npt.NDArray[np.uint16]:  # n
     count = width * height
     if not 0 < count <= MOST_PIXELS:
         raise wrong
-    words = np.frombuffer(data[RVL_HEAD.size : len(data) - len(data) % 4], "<u4").astype(">u4")
-    packed = words.view(np.uint8)
-    nibbles = np.column_stack((packed >> 4, packed & 15)).reshape(-1)
-    starts = np.append(0, np.flatnonzero(nibbles < 8) + 1)
-    nibbles = nibbles[: starts[-1]]  # the last number may be cut off
-    starts = starts[:-1]
-    place = np.arange(len(nibbles)) - np.repeat(starts, np.diff(np.append(starts, len(nibbles))))
-    if len(starts) == 0 or place.max() > MOST_NIBBLES:
+    data = data[RVL_HEAD.size : RVL_HEAD.size + 4 * count + 16]  # a pixel has 7 nibbles at most
+    words = np.frombuffer(data[: len(data) - len(data) % 4], "<u4").astype(">u4")
+    numbers = numbers_of_rvl(words.view(np.uint8))
+    if numbers is None:
         raise wrong
-    numbers = np.add.reduceat((nibbles & 7).astype(np.int64) << 3 * place, starts)
-    lengths: list[int] = []
-    is_length = np.zeros(len(numbers), bool)
+    firsts = array("i")
+    view: Any = memoryview(numbers)  # type: ignore[arg-type]  # an array is a buffer
     at, left = 0, count
-    while left > 0 and at + 1 < len(numbers):
-        zeros, others = int(numbers[at]), int(numbers[at + 1])
-        lengths += zeros, others
-        is_length[at : at + 2] = True
-        at += 2 + others
-        left -= zeros + others
-    if left != 0 or at > len(numbers):
+    while left > 0 and at + 1 < len(view):
+        followers = view[at + 1]
+        length = view[at] + followers
+        if length == 0:
+            raise wrong
+        firsts.append(at)
+        at += 2 + followers
+        left -= length
+    if left != 0 or at > len(view):
         raise wrong
-    deltas = numbers[:at][~is_length[:at]]
+    zeros = np.array(firsts, np.int32)
+    lengths = np.column_stack((numbers[zeros], numbers[zeros + 1])).reshape(-1)
+    is_delta = np.ones(at, bool)
+    is_delta[zeros] = is_delta[zeros + 1] = False
+    deltas = numbers[:at][is_delta]
     depths = np.zeros(count, np.uint16)
     has_depth = np.repeat(np.arange(len(lengths)) % 2 == 1, lengths)
-    depths[has_depth] = np.cumsum((deltas >> 1) ^ -(deltas & 1)).astype(np.uint16)
+    depths[has_depth] = np.cumsum((deltas >> 1) ^ -(deltas & 1), dtype=np.uint16)
     return depths.reshape(height, width)
+
+
+def numbers_of_rvl(packed: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32] | None:
+    """Return the numbers that are packed in RVL, or None if one of them is too long.
+
+    It takes a block at a time, as the intermediate arrays are many times as large as the data.
+    """
+    found = [np.empty(0, np.int32)]
+    rest = np.empty(0, np.uint8)
+    for begin in range(0, len(packed), BLOCK_BYTES):
+        block = packed[begin : begin + BLOCK_BYTES]
+        unpacked = np.column_stack((block >> 4, block & 15)).reshape(-1)
+        nibbles = np.concatenate((rest, unpacked))
+        starts = np.append(0, np.flatnonzero(nibbles < 8) + 1)
+        sizes = np.diff(starts)
+        rest = nibbles[starts[-1] :]
+        if max(sizes.max(initial=0), len(rest)) > MOST_NIBBLES:
+            return None
+        if len(sizes):
+            place = np.arange(starts[-1]) - np.repeat(starts[:-1], sizes)
+            bits = (nibbles[: starts[-1]] & 7).astype(np.int32) << (3 * place).astype(np.int32)
+            found.append(np.add.reduceat(bits, starts[:-1], dtype=np.int32))
+    return np.concatenate(found)
 
 
 def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Image:  # noqa: A002  # the field's name

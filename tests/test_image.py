@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import sys
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -368,6 +369,19 @@ def test_a_large_rvl_picture_is_read_and_a_bomb_is_not() -> None:
     bomb = bytes(12) + struct.pack("<II", 65535, 65535) + unknown[20:]
     with pytest.raises(MessageError, match="no RVL picture"):
         decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=bomb))
+
+
+@pytest.mark.parametrize("side", [1, 2000], ids=["long", "without progress"])
+def test_rvl_takes_no_more_memory_than_its_picture_needs(side: int) -> None:
+    """Neither bytes after a picture nor runs of no pixels at all are unpacked as a whole."""
+    data = bytes(12) + struct.pack("<II", side, side) + bytes(1 << 20)
+    tracemalloc.start()
+    try:
+        with pytest.raises(MessageError, match="no RVL picture"):
+            decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data))
+        assert tracemalloc.get_traced_memory()[1] < 40 << 20
+    finally:
+        tracemalloc.stop()
 
 
 @given(st.binary(max_size=80), st.integers(0, 9), st.integers(0, 9))
