@@ -71,6 +71,16 @@ def test_check_says_what_it_has_repaired(run: str, capsys: Captured) -> None:
     assert main(["bag", "info", run]) == 0
 
 
+def test_a_check_that_misses_messages_fails(run: str, capsys: Captured) -> None:
+    """It cannot bring them back, and a script that goes on has to know that they are gone."""
+    file = Path(run) / "metadata.yaml"
+    file.write_text(file.read_text().replace("message_count: 3", "message_count: 5"))
+    for _ in range(2):
+        assert main(["bag", "check", run]) == 1
+        assert "missing, as metadata.yaml counted: /a: 2; /b: 2" in capsys.readouterr().out
+        assert main(["bag", "reindex", run]) == 0
+
+
 def test_metadata_are_written_anew_by_reindex(run: str) -> None:
     """As in rosbag2."""
     (Path(run) / "metadata.yaml").unlink()

@@ -27,6 +27,7 @@ from aionode.cli._support.options import (
     print_options,
     read_values,
     types_option,
+    verbose_option,
 )
 from aionode.cli._support.yaml_messages import message_from_yaml
 from aionode.graph import SERVICE_KINDS, EndpointKind
@@ -61,9 +62,7 @@ add_type_and_find(service_command, SERVICE)
     service_command,
     "info",
     name_argument("service"),
-    click.option(
-        "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
-    ),
+    verbose_option,
 )
 async def info(node: Node, service_name: str, *, output: Output, verbose: bool = False) -> None:
     """Print the type of a service, and its clients and servers.

@@ -33,12 +33,16 @@ __all__ = [
     "seconds",
     "sim_time_option",
     "types_option",
+    "verbose_option",
     "whole",
 ]
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 json_option = click.option("--json", is_flag=True, help="Print one record per line, as JSON.")
+verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
+)
 
 MOST_SECONDS = 1e9
 """Upper limit of durations in seconds: about thirty years, within the range of every clock."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.graph import EndpointInfo
     from aionode.node import Node
+
 __all__ = ["Feed", "Feeds", "Received"]
 
 T = TypeVar("T")
@@ -42,7 +43,6 @@ MOST_LATCHED: Final = 100
 
 MOST_LATCHED_BYTES: Final = 32 << 20
 """Most bytes of these messages, though the last one is always kept."""
-
 
 BESIDE_BYTES: Final = 1 << 20
 """Size from which a message is copied in a thread: at once, it would block the loop for long."""

@@ -261,7 +261,10 @@ def reindex_command(path: str, storage: str) -> None:
 @click.argument("path")
 @json_option
 def check_command(path: str, json: bool) -> None:
-    """Check a bag, and repair what a power cut left."""
+    """Check a bag, and repair what a power cut left.
+
+    The exit status is 1 if messages are missing that the bag once had.
+    """
     from aionode import bag
 
     output = Output(json=json)
@@ -272,3 +275,4 @@ def check_command(path: str, json: bool) -> None:
         if opened.missing:
             text = f"missing, as metadata.yaml counted: {missing_text(opened)}"
             output.item(escaped(text, one_line=True), {"missing": opened.missing})
+            raise click.exceptions.Exit(1)

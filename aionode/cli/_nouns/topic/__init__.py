@@ -24,6 +24,7 @@ from aionode.cli._support.options import (
     read_values,
     seconds,
     types_option,
+    verbose_option,
     whole,
 )
 from aionode.cli._support.yaml_messages import Filler
@@ -120,9 +121,7 @@ def verbose_text(
     topic_command,
     "info",
     name_argument("topic"),
-    click.option(
-        "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
-    ),
+    verbose_option,
 )
 async def info(node: Node, topic_name: str, *, output: Output, verbose: bool = False) -> None:
     """Print the type of a topic, and its publishers and subscriptions.
