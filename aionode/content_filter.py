@@ -159,7 +159,9 @@ class Parser:
             )
         for index, parameter in enumerate(parameters):
             if not isinstance(parameter, str):
-                raise TypeError(f"filter parameter %{index}: {parameter!r} is no text; write '5'")
+                raise TypeError(
+                    f"filter parameter %{index}: {parameter!r} is not a string; write '5'"
+                )
         self._msg_type = msg_type
         self._expression = expression
         self._parameters = parameters
@@ -284,7 +286,7 @@ class Parser:
     def _like(self, value: Operand, start: Token) -> Callable[[Any], bool]:
         pattern = self._operand()
         if not value.is_field or pattern.is_field or {value.kind, pattern.kind} != {"text"}:
-            self._fail("LIKE takes a field that is a string, and a text such as 'a%'", start)
+            self._fail("LIKE takes a string field and a pattern such as 'a%'", start)
         like, get = LikePattern(pattern.get(None)), value.get
         return lambda msg: like.matches(get(msg))
 
@@ -323,7 +325,8 @@ class Parser:
         operand = literal(first) if len(rest) == 1 else None
         if operand is None:
             self._fail(
-                f"{token.text} is {text!r}, no literal; write a number, TRUE, FALSE or \"'text'\"",
+                f"{token.text} is {text!r}, not a literal; write a number, TRUE, FALSE or "
+                "\"'text'\"",
                 token,
             )
         return operand  # type: ignore[return-value]  # _fail raises

@@ -120,15 +120,15 @@ TERMINALS: Final = frozenset(
 """Programs that open a window in which another program runs."""
 
 WINDOW: Final = (
-    "a window of ROS's in C++ and Qt; the page of `aionode gateway`, and Foxglove by it, show "
-    "and steer the robot"
+    "a graphical tool of ROS 2 in C++; use the page of `aionode gateway`, or Foxglove connected to "
+    "it"
 )
 
 REMARKS: Final[dict[str, str]] = {
     **dict.fromkeys(
         ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "gz_sim", "ignition_gazebo"),
-        "the simulator Gazebo in C++; a node that integrates commands, as the examples have one, "
-        "stands in for a base",
+        "the simulator Gazebo, in C++; a node that integrates commands, such as the one in the "
+        "examples, can stand in for a base",
     ),
     **dict.fromkeys(
         ("ros_gz_bridge", "ros_ign_bridge"),
@@ -136,7 +136,7 @@ REMARKS: Final[dict[str, str]] = {
     ),
     **dict.fromkeys(
         ("slam_toolbox", "cartographer_ros"),
-        "a mapper in C++; a ROS 2 with rmw_zenoh can run it beside aionode",
+        "a mapping program in C++; a ROS 2 with rmw_zenoh can run it beside aionode",
     ),
     **dict.fromkeys(
         (
@@ -158,11 +158,11 @@ REMARKS: Final[dict[str, str]] = {
     ),
     **dict.fromkeys(
         ("image_proc", "depth_image_proc", "stereo_image_proc"),
-        "a set of plugins in C++ that work on images; a node of your own does so with "
-        "aionode.image and OpenCV, and a ROS 2 with rmw_zenoh can run it beside aionode",
+        "a set of image processing plugins in C++; write a node with aionode.image and OpenCV, or "
+        "run it beside aionode in a ROS 2 with rmw_zenoh",
     ),
     "rclcpp_components": (
-        "the container for nodes in C++; node classes of aionode need none: "
+        "the container for C++ nodes; node classes of aionode need none: "
         "ComposableNode(plugin='my_robot.nodes:Driver')"
     ),
 }

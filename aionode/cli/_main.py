@@ -30,7 +30,7 @@ NOUNS = {
     "action": "Send goals; list and inspect actions.",
     "bag": "Record, play, inspect, repair and compare bags.",
     "completion": "Print the completion script of a shell.",
-    "deploy": "Bring a workspace onto a robot, where systemd runs it.",
+    "deploy": "Copy a workspace to a robot, where systemd runs it.",
     "doctor": "Find out why endpoints do not communicate.",
     "gateway": "Serve the robot to browsers, programs and apps.",
     "graph": "Draw nodes and what they share; show what does not match.",

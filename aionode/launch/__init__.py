@@ -170,7 +170,7 @@ def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iter
     """Yield what is left out, by missing package, and which handlers never run."""
     for package, entities in left_out.items():
         name, _, executable = package.partition(" ")
-        what = f"package '{name}' is not there"
+        what = f"package '{name}' is missing"
         if executable:
             what = f"package '{name}' has no executable '{executable}' here"
         remark = remark_on(name, executable)

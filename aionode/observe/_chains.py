@@ -15,7 +15,7 @@ ARROW: Final = " ← "
 
 UNKNOWN: Final[dict[Unknown, str]] = {
     "no aionode": "ROS 2",
-    "older": "an older aionode",
+    "older": "an older version of aionode",
     "silent": "does not answer",
     "not kept": "keeps no causes",
     "not sent": "has sent nothing yet",
@@ -39,7 +39,7 @@ def to_chains(why: Why) -> str:
     notes = {
         f"no causes are kept: {REMEDY}": why.not_kept,
         "no answer": why.silent,
-        "an older aionode, which keeps no causes": why.older,
+        "an older version of aionode, which keeps no causes": why.older,
         "an answer that this version cannot read": why.unreadable,
     }
     lines += [

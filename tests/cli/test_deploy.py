@@ -24,7 +24,7 @@ from aionode.cli import main
 pytestmark = [
     pytest.mark.skipif(
         not (shutil.which("ssh") and shutil.which("scp") and shutil.which("flock")),
-        reason="the client of OpenSSH is not installed",
+        reason="the OpenSSH client is not installed",
     ),
     pytest.mark.filterwarnings("ignore::ResourceWarning"),  # connections for tests to break
 ]
@@ -214,7 +214,7 @@ async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: 
     host.breaks_copy = True
     status, text = await deploy(workspace, "--no-follow", python="python-without-pip")
     assert status == 1
-    assert text.splitlines()[-1].startswith("robot: no connection, or it broke (copy)")
+    assert text.splitlines()[-1].startswith("robot: the connection failed or broke (copy)")
     host.breaks_copy = False
 
     barrier = host.folder / "barrier"
@@ -225,7 +225,7 @@ async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: 
         host.connections[-1].abort()
     status, text = running.result()
     assert status == 1
-    assert text.splitlines()[-1].startswith("robot: no connection, or it broke (install)")
+    assert text.splitlines()[-1].startswith("robot: the connection failed or broke (install)")
     assert (host.current.resolve(), host.calls()) == (before, [])
 
     # processes that the broken one left running
@@ -266,7 +266,7 @@ async def test_a_dry_run_connects_to_nothing(host: Host, workspace: Path) -> Non
     [
         ("[Service]\nWorkingDirectory=/opt/my_robot\n", "is not where a deployment puts a release"),
         ("[Service]\nWorkingDirectory=/opt/current\n", "is not where a deployment puts a release"),
-        ("WorkingDirectory\n", "is no unit of systemd"),
+        ("WorkingDirectory\n", "not a systemd unit"),
     ],
 )
 def test_a_unit_that_runs_elsewhere_is_refused(

@@ -62,9 +62,9 @@ def found(after: Snapshot) -> list[Finding]:
     [
         (scan({"blocking": durations(40, 50)}), "hint", "holds the event loop for 4"),
         (scan({"blocking": durations(450, 50)}), "problem", "holds the event loop for 4"),
-        (scan({"queue_wait": durations(200, 50)}), "problem", "before on_scan of /driver begins"),
+        (scan({"queue_wait": durations(200, 50)}), "problem", "on_scan of /driver begins 197 ms"),
         (scan(received=90, dropped=10), "hint", "10 of 100 messages for on_scan of /driver were"),
-        (scan(received=90, lost=10), "hint", "10 messages of other processes are missing"),
+        (scan(received=90, lost=10), "hint", "10 messages from other processes did not"),
         (scan(received=90, errors=3), "problem", "has failed 3 times, 3 of them just now"),
     ],
 )
@@ -99,7 +99,7 @@ def test_waits_for_a_processor_are_told(load: float, remedy: str) -> None:
     (finding,) = found(look)
 
     assert finding.severity == "hint"
-    assert "12 of its callbacks were late since no processor was free, 345 ms" in finding.text
+    assert "12 of its callbacks were late because no processor was free, 345 ms" in finding.text
     assert f"{load:.1f} on 2 cores" in finding.text
     assert remedy in finding.remedy
 

@@ -189,7 +189,7 @@ async def test_a_topic_that_a_recording_has_not_is_named(
     tool: Node, screen: Any, recording: Path
 ) -> None:
     """With those that it contains."""
-    with pytest.raises(CommandError, match="nothing of /odom in it; there are /scan"):
+    with pytest.raises(CommandError, match="it has no topic /odom; it has: /scan"):
         await plot(tool, ["/odom.x"], output=screen.output, bag_path=str(recording))
 
 

@@ -70,9 +70,9 @@ def test_each_missing_package_is_one_warning_with_what_was_left_out(files: Files
 
     assert len([text for text in logs if "'rviz2'" in text]) == 1
     rviz, sim, container, monitor, waiting = logs
-    assert rviz.startswith("package 'rviz2' is not there: it is a window of ROS's in C++ and Qt")
+    assert rviz.startswith("package 'rviz2' is missing: it is a graphical tool of ROS 2 in C++")
     assert rviz.count("a.launch.py:") == 2
-    assert sim.startswith("package 'tb3_sim' is not there; left out: IncludeLaunchDescription (")
+    assert sim.startswith("package 'tb3_sim' is missing; left out: IncludeLaunchDescription (")
     assert sim.count("a.launch.py:") == 2
     assert "ComposableNode(plugin='my_robot.nodes:Driver')" in container
     assert monitor.startswith("package 'tf2_ros' has no executable 'tf2_other' here; left out:")
@@ -207,7 +207,7 @@ def test_of_a_container_the_nodes_stay_that_aionode_has(files: Files) -> None:
         "aionode.programs._relay:Relay",
     ]
     (log,) = (each["log"] for each in found if "log" in each)
-    assert log.startswith("package 'image_proc' is not there: it is a set of plugins in C++")
+    assert log.startswith("package 'image_proc' is missing: it is a set of image processing")
     assert "left out: image_proc::RectifyNode (" in log
 
 
@@ -215,7 +215,9 @@ def test_without_the_option_a_plugin_that_is_missing_is_an_error_that_says_what_
     files: Files,
 ) -> None:
     """Rather than that the container is missing, since having it would not help."""
-    with pytest.raises(LaunchFileError, match=r"'image_proc': not found in .* it is a set of plug"):
+    with pytest.raises(
+        LaunchFileError, match=r"'image_proc': not found in .* it is a set of image"
+    ):
         _ = Plan(files.write("a.launch.py", CONTAINER)).steps
 
 
@@ -281,10 +283,10 @@ def test_what_is_made_by_a_module_that_is_not_there_is_left_out(files: Files) ->
     helpers, settings = (each["log"] for each in found if "log" in each)
     file = files.folder / "a.launch.py"
     assert helpers == (
-        "package 'moveit_configs_elsewhere' is not there; left out: static_transform_publisher "
+        "package 'moveit_configs_elsewhere' is missing; left out: static_transform_publisher "
         f"({file}:31), moveit_configs_elsewhere.launches.generate_demo_launch() ({file}:25)"
     )
-    assert settings.startswith("package 'settings_of_the_robot' is not there; left out: Opaque")
+    assert settings.startswith("package 'settings_of_the_robot' is missing; left out: Opaque")
 
 
 def test_a_file_whose_description_comes_from_a_module_that_is_not_there_starts_nothing(
@@ -297,7 +299,7 @@ def generate_launch_description():
     return generate_rsp_launch("panda")
 """
     (log,) = records(files, text)
-    assert log["log"].startswith("package 'moveit_configs_elsewhere' is not there; left out:")
+    assert log["log"].startswith("package 'moveit_configs_elsewhere' is missing; left out:")
 
     with pytest.raises(LaunchFileError, match="no module moveit_configs_elsewhere"):
         Plan(files.write("a.launch.py", text))
@@ -332,7 +334,7 @@ def generate_launch_description():
     ])
 """
     (log,) = records(files, text)
-    assert log["log"].startswith("package 'create3' is not there; left out:")
+    assert log["log"].startswith("package 'create3' is missing; left out:")
 
 
 def test_a_node_is_left_out_whose_parameters_are_in_a_package_that_is_not_there(
@@ -352,7 +354,7 @@ def generate_launch_description():
     ])
 """
     (log,) = records(files, text)
-    assert log["log"].startswith("package 'nowhere' is not there; left out: twist_mux")
+    assert log["log"].startswith("package 'nowhere' is missing; left out: twist_mux")
 
 
 @pytest.mark.parametrize(
@@ -381,7 +383,7 @@ def generate_launch_description():
 """
     log, started = records(files, text)
 
-    assert log["log"].startswith("package 'arm_moveit_config' is not there; left out: twist_mux")
+    assert log["log"].startswith("package 'arm_moveit_config' is missing; left out: twist_mux")
     assert "twist_mux" in started["argv"]
 
 
@@ -397,4 +399,4 @@ def generate_launch_description():
     return generate_rsp_launch(MoveItConfigsBuilder("arm").to_moveit_configs())
 """
     (log,) = records(files, text)
-    assert log["log"].startswith("package 'arm_moveit_config' is not there; left out: robot_state")
+    assert log["log"].startswith("package 'arm_moveit_config' is missing; left out: robot_state")

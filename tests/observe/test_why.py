@@ -577,7 +577,7 @@ async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:
     assert found.unreadable == {"c3": ["/newer"], "e5": ["/lies"]}
     assert to_chains(found).splitlines()[1:] == [
         "/frozen: no answer",
-        "/older: an older aionode, which keeps no causes",
+        "/older: an older version of aionode, which keeps no causes",
         "/newer: an answer that this version cannot read",
         "/lies: an answer that this version cannot read",
     ]

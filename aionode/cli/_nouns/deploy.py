@@ -43,12 +43,12 @@ def deploy_command(
     no_follow: bool,
     dry_run: bool,
 ) -> None:
-    """Bring a workspace onto a robot over ssh, and have systemd run it there.
+    """Copy a workspace to a robot over ssh, where systemd runs it.
 
-    FOLDER is a workspace such as `aionode new` writes, the current one if none is named. Its files
-    and the wheels of its packages make a release, which is installed into a virtual environment of
-    its own beside those before it. Only when it is complete does the unit change to it, in one
-    step. The release before stays, and a second run without changes restarts nothing.
+    FOLDER is a workspace such as `aionode new` writes, by default the current folder. Its files and
+    the wheels of its packages form a release, which is installed into its own virtual environment,
+    beside earlier releases. Only when it is complete does the unit switch to it, atomically.
+    Earlier releases stay, and a second run without changes restarts nothing.
     """
     if target.startswith("-"):
         raise click.UsageError(

@@ -56,7 +56,8 @@ PORT = 9090
     help="Serve clients of MCP, such as those of language models, at /mcp.",
 )  # fmt: skip
 @click.option(
-    "--about", default="", metavar="TEXT", help="With --mcp: what models are told of this robot.",
+    "--about", default="", metavar="TEXT",
+    help="With --mcp: a description of this robot for models.",
 )  # fmt: skip
 @click.option(
     "--bags", default="", metavar="FOLDER",

@@ -98,7 +98,7 @@ async def draw(
         known = ", ".join(each.name for each in picture_of(node.graph).vertices[:10])
         raise CommandError(
             f"nothing is named {' or '.join(names)}; "
-            + (f"there are {known}" if known else "there is no node of others")
+            + (f"there are {known}" if known else "no other process has a node")
         )
     if save is not None:
         save_picture(save, picture)

@@ -39,17 +39,17 @@ def robot_options(command: Callable[..., Any]) -> Callable[..., Any]:
         ),
         click.option(
             "--connect", expose_value=False, callback=set_variable, metavar="ENDPOINT",
-            help="Where the robot's nodes or its router are, if they are not found by themselves, "
-            "such as tcp/robot.local:7447.",
+            help="Address of the robot's nodes or router, if discovery does not find them, such as "
+            "tcp/robot.local:7447.",
         ),
         click.option(
             "--policy", "path", metavar="FILE",
-            help="What may be done, as TOML; it is read again when it changes. Without it, the "
-            "assistant only looks.",
+            help="TOML file that says what the assistant may do; reloaded when it changes. Without "
+            "it, the assistant can only read.",
         ),
         click.option(
             "--allow-write", is_flag=True,
-            help="Without a policy: the assistant may do anything; it moves the robot by lease.",
+            help="Without a policy: let the assistant do anything; it moves the robot by lease.",
         ),
         click.option(
             "--as", "name", default="", metavar="NAME",
@@ -58,7 +58,7 @@ def robot_options(command: Callable[..., Any]) -> Callable[..., Any]:
         ),
         click.option(
             "--about", default="", metavar="TEXT",
-            help="What the model is told of this robot, or @FILE with it.",
+            help="A description of this robot for the model, or @FILE with one.",
         ),
         click.option(
             "--bags", default="", metavar="FOLDER",
@@ -86,9 +86,9 @@ def set_variable(ctx: click.Context, param: click.Parameter, value: Any) -> None
 @robot_options
 @click.option(
     "--print-config", "host", metavar="PROGRAM", is_flag=False, flag_value="all",
-    help="Print the settings of a program that starts this command with these options: "
-    "claude-desktop, claude-code, cursor, vscode, windsurf, gemini-cli, codex or zed; all of them "
-    "without a name.",
+    help="Print the settings with which a program starts this command and these options: "
+    "claude-desktop, claude-code, cursor, vscode, windsurf, gemini-cli, codex or zed; without a "
+    "name, all of them.",
 )  # fmt: skip
 @click.pass_context
 def mcp_command(ctx: click.Context, /, host: str | None, **options: Any) -> None:

@@ -54,13 +54,13 @@ async def record(node: Node, path: Path, *, output: Output, duration: float = 10
     notes = {
         "callbacks are not recorded: start it with AIONODE_CAUSES=1": trace.not_kept,
         "no answer": trace.silent,
-        "an older aionode, or a newer one that reports its callbacks differently": trace.older,
+        "its version of aionode is too old, or reports callbacks in another form": trace.older,
     }
     lines = [f"{path}: {trace.callbacks} callbacks"]
     if trace.lost:
         lines.append(
-            f"{trace.lost} callbacks and things sent are missing: there were more than a process "
-            "keeps between two questions, or than a trace holds; record for a shorter time"
+            f"{trace.lost} callbacks and sent items are missing: a process had more of them than "
+            "it keeps between two queries, or the trace was full; record for a shorter time"
         )
     lines += [
         f"{', '.join(nodes)}: {text}"

@@ -26,7 +26,11 @@ __all__ = ["explain", "why_command"]
 @click.command("why")
 @click.argument("name", shell_complete=complete_names("topic"))
 @click.option(
-    "--timeout", type=positive, default=0.5, show_default=True, help="Time for an answer, in s."
+    "--timeout",
+    type=positive,
+    default=0.5,
+    show_default=True,
+    help="Maximum time to wait for an answer, in s.",
 )
 @click.option(
     "--from",

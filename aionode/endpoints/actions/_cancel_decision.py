@@ -11,7 +11,7 @@ from aionode.errors import brief
 
 __all__ = ["OWNER_LOST", "agrees", "ends_for_lost_owner"]
 
-OWNER_LOST: Final = "the one for whom its client sent it is lost"
+OWNER_LOST: Final = "the client on whose behalf it was sent is lost"
 
 
 async def agrees(

@@ -141,7 +141,7 @@ def silence_finding(who: str) -> Finding:
     return Finding(
         "problem",
         "process",
-        f"{who}: its nodes are not in this list, and they answer nobody",
+        f"{who}: its nodes are not in this list, and they do not answer",
         "resume it or end it",
     )
 

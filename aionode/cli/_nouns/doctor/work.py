@@ -72,14 +72,14 @@ def work_findings(found: Rates) -> Iterator[Finding]:
             "problem",
             ", ".join(names),
             "its process does not answer: it is stopped, its event loop is blocked, or it is dead",
-            "look at it with `ps` or `py-spy dump --pid PID`; `kill -CONT PID` resumes one that is"
-            " stopped",
+            "inspect it with `ps` or `py-spy dump --pid PID`; `kill -CONT PID` resumes a stopped "
+            "process",
         )
     for names in found.snapshot.older.values():
         yield Finding(
             "hint",
             ", ".join(names),
-            "an older aionode, whose work is unknown",
+            "its version of aionode is too old to report what it does",
             "update aionode there",
         )
 
@@ -93,11 +93,11 @@ def waits_of(process: ProcessReport) -> Iterator[Finding]:
     yield Finding(
         "hint",
         f"process {process.pid} ({escaped(process.program, one_line=True)})",
-        f"{process.processor_waits} of its callbacks were late since no processor was free, "
+        f"{process.processor_waits} of its callbacks were late because no processor was free, "
         f"{process.processor_waited_ns / 1e6:.0f} ms in all since its start; {why}",
-        "end what else runs there: `aionode top` shows who takes the processors"
+        "stop other programs there: `aionode top` shows which of them use the processors"
         if busy
-        else f"see whether it is bound to few processors: taskset -pc {process.pid}",
+        else f"check whether it is bound to few processors: taskset -pc {process.pid}",
     )
 
 
@@ -113,29 +113,29 @@ def findings_of(entity: EntityRate) -> Iterator[Finding]:
             subject,
             f"{whose} holds the event loop for {held:.0f} ms (p99); nothing else of its process"
             " runs meanwhile",
-            "await what takes long, or run the callback in a thread: offload=True",
+            "await the slow part, or run the callback in a thread: offload=True",
         )
     if (late := percentile_ms(entity.durations.get("queue_wait"))) > LATE_MS:
         yield Finding(
             "problem",
             subject,
-            f"what arrives waits {late:.0f} ms (p99) before {whose} begins",
+            f"{whose} begins {late:.0f} ms (p99) after its input has arrived",
             "see which callback holds the event loop: `aionode top`, table callbacks",
         )
     if report.kind == "subscription" and dropped > MANY * (received + dropped):
         yield Finding(
             "hint",
             subject,
-            f"{dropped} of {received + dropped} messages for {whose} were dropped: they come faster"
-            " than it takes them",
-            "give it a larger depth if they come in bursts, else publish less often",
+            f"{dropped} of {received + dropped} messages for {whose} were dropped: they arrive "
+            "faster than it handles them",
+            "increase its depth if they arrive in bursts, otherwise publish less often",
         )
     if lost > MANY * (received + lost):
         yield Finding(
             "hint",
             subject,
-            f"{lost} messages of other processes are missing at {entity.node}",
-            "use reliable QoS, or look at the network",
+            f"{lost} messages from other processes did not reach {entity.node}",
+            "use reliable QoS, or check the network",
         )
     if errors := report.counts.get("errors", 0):
         yield Finding(

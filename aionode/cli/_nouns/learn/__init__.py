@@ -128,17 +128,18 @@ def episode_keys(episodes: Episodes, tasks: asyncio.TaskGroup) -> dict[str, Call
 @click.option("--contract", metavar="FILE", help="The contract; default: that of the recording.")
 @click.option("--task", default="", help="The task; default: that of each recording.")
 @click.option("--codec", type=click.Choice(["h264", "av1"]), default="h264", help="Of the videos.")
+@click.option("-j", "--jobs", type=click.IntRange(0), default=0, help="Bags at a time; 0 chooses.")
+@click.option("--max-dropped", type=SHARE, default=0.05, help="Maximum share of missing rows.")
 @click.option(
-    "-j", "--jobs", type=click.IntRange(0), default=0, help="Bags at a time; 0 for a good number."
-)
-@click.option("--max-dropped", type=SHARE, default=0.05, help="Share of rows that may be missing.")
-@click.option(
-    "--max-repeated", type=SHARE, default=0.2, help="Share of rows that may repeat a picture."
+    "--max-repeated", type=SHARE, default=0.2, help="Maximum share of rows that repeat an image."
 )
 @click.option(
-    "--max-rate-error", type=SHARE, default=0.05, help="How far the rate may be from fps."
+    "--max-rate-error",
+    type=SHARE,
+    default=0.05,
+    help="Maximum deviation of the rate, as a share of fps.",
 )
-@click.option("--failures", is_flag=True, help="Also episodes that ended as failures.")
+@click.option("--failures", is_flag=True, help="Also export failed episodes.")
 @json_option
 def export_command(episodes: tuple[str, ...], out: str, **values: Any) -> None:
     """Convert episodes to a data set of LeRobot, format v3.0.

@@ -21,9 +21,9 @@ __all__ = ["top", "top_command"]
 
 
 @click.command("top")
-@click.option("--once", is_flag=True, help="Print one look as text, and end.")
+@click.option("--once", is_flag=True, help="Print one snapshot as text and exit.")
 @click.option(
-    "--interval", type=positive, default=2.0, show_default=True, help="Time between looks, in s."
+    "--interval", type=positive, default=2.0, show_default=True, help="Time between updates, in s."
 )
 @json_option
 @ros2_options
@@ -75,7 +75,7 @@ async def live(node: Node, output: Output, interval: float) -> None:
             raise
         raise CommandError(
             "the live view needs Textual, which is not installed: pip install 'aionode[tui]'; "
-            "`aionode top --once` prints one look without it"
+            "`aionode top --once` prints a snapshot without it"
         ) from error
     if not (output.is_terminal and sys.stdin.isatty()):
         raise CommandError("the live view needs a terminal; use --once or --json")

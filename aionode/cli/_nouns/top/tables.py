@@ -229,7 +229,7 @@ def notes(rates: Rates) -> list[str]:
     ]
     lines += found.unreached
     lines += [
-        f"{', '.join(names)}: an older aionode, which keeps no reports"
+        f"{', '.join(names)}: its version of aionode is too old to make reports"
         for names in found.older.values()
     ]
     lines += [

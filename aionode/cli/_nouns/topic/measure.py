@@ -89,7 +89,7 @@ def window_option(default: int) -> Callable[[CommandT], CommandT]:
 
 names_argument = click.argument("topic_names", nargs=-1, shell_complete=complete_names("topic"))
 all_option = click.option(
-    "-a", "--all", "every", is_flag=True, help="Measure all topics that there are now."
+    "-a", "--all", "every", is_flag=True, help="Measure all topics that exist now."
 )
 
 

@@ -52,7 +52,7 @@ COLUMNS: Final = 100
     ),
     click.option(
         "-w", "--window", metavar="SECONDS", type=positive, default=10.0, show_default=True,
-        help="Time that the chart shows.",
+        help="Time span of the chart.",
     ),
     click.option(
         "-d", "--duration", metavar="SECONDS", type=positive, help="End after this time.",
@@ -60,7 +60,7 @@ COLUMNS: Final = 100
     click.option(
         "--png", metavar="FILE", help="Write a picture at the end; needs the extra `plot`.",
     ),
-    click.option("--bag", "bag_path", metavar="BAG", help="Plot a recording, all of it."),
+    click.option("--bag", "bag_path", metavar="BAG", help="Plot a whole recording."),
     interfaces=True,
     sim_time=True,
     endless=lambda options: options["duration"] is None and options["bag_path"] is None,
@@ -213,7 +213,7 @@ def read_bag(path: str, numbers: Sequence[Number], output: Output) -> None:
         for number in numbers:
             if number.topic not in has:
                 raise CommandError(
-                    f"{path}: nothing of {number.topic} in it; there are {', '.join(sorted(has))}"
+                    f"{path}: it has no topic {number.topic}; it has: {', '.join(sorted(has))}"
                 )
         for record in recording.read(topics=sorted({number.topic for number in numbers})):
             for number in numbers:

@@ -116,7 +116,7 @@ def release_of(workspace: Path, unit: Path | None, wheels: tuple[Path, ...]) -> 
     if not packages and not wheels:
         raise click.UsageError(
             f"{workspace}: no package in it has a pyproject.toml or a setup.py, so there is "
-            "nothing to install; name a folder such as `aionode new` writes, or --wheel FILE"
+            "nothing to install; give a folder such as `aionode new` writes, or --wheel FILE"
         )
     return Release(workspace, unit, folder, user, tuple(files_in(workspace)), packages, wheels)
 
@@ -127,8 +127,8 @@ def only_unit(workspace: Path) -> Path:
     if len(units) != 1:
         there = ", ".join(unit.name for unit in units) or "none"
         raise click.UsageError(
-            f"{workspace}: one unit of systemd (*.service) has to be in it; there: {there}; "
-            "--unit FILE names one, and `aionode new` writes one"
+            f"{workspace}: expected one systemd unit (*.service) in it, found: {there}; choose one "
+            "with --unit FILE; `aionode new` writes one"
         )
     return units[0]
 
@@ -142,7 +142,7 @@ def place_in(unit: Path) -> tuple[PurePosixPath, str]:
     try:
         parser.read_string(unit.read_text(encoding="utf-8"))
     except (configparser.Error, UnicodeDecodeError) as error:
-        raise click.UsageError(f"{unit}: is no unit of systemd: {error!r}") from error
+        raise click.UsageError(f"{unit}: not a systemd unit: {error!r}") from error
     place = PurePosixPath(parser.get("Service", "WorkingDirectory", fallback="").strip())
     if (
         not place.is_absolute()

@@ -27,7 +27,7 @@ LOST: Final = 255
 CONSEQUENCES: Final = {
     "prepare": "nothing was changed there",
     "install": "what ran there still runs; run the same command again",
-    "activate": "the new release is the current one, but systemd did not take or start its unit",
+    "activate": "the new release is current, but systemd did not accept or start its unit",
 }
 """What a script that failed has left behind."""
 
@@ -79,7 +79,7 @@ class Robot:
         if self.is_dry:
             click.echo(f"\n$ {shlex.join(command)}")
             return
-        click.echo(f"the log of {unit}, until Ctrl-C; the robot goes on without it")
+        click.echo(f"the log of {unit}; Ctrl-C ends this command, and the unit keeps running")
         become([shutil.which("ssh") or "ssh", *command[1:]])
 
     def options(self) -> list[str]:
@@ -94,14 +94,14 @@ class Robot:
             )
         except FileNotFoundError as error:
             raise click.ClickException(
-                f"{command[0]}: not found; install the client of OpenSSH"
+                f"{command[0]}: not found; install the OpenSSH client"
             ) from error
         if done.returncode == 0:
             return done.stdout.strip()
         if done.returncode == LOST or step == "copy":
             raise click.ClickException(
-                f"{self.target}: no connection, or it broke ({step}); what ran on the robot still "
-                "runs, and the release is not complete: run the same command again"
+                f"{self.target}: the connection failed or broke ({step}); what ran on the robot "
+                "still runs, and the release is not complete: run the same command again"
             )
         raise click.ClickException(
             f"{self.target}: {step} failed with status {done.returncode}, for the reason above; "
