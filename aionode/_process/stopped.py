@@ -17,7 +17,8 @@ import xxhash
 __all__ = ["WatchedProcess", "is_stopped", "pid_space"]
 
 BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
-PID_NAMESPACE: Final = Path("/proc/self/ns/pid")
+OWN_PROCESS: Final = Path("/proc/self")
+PID_NAMESPACE: Final = OWN_PROCESS / "ns/pid"
 
 STOPPED: Final = {b"T", b"t"}
 """States of processes that a signal, or a debugger, has stopped; see proc(5)."""
@@ -26,9 +27,12 @@ STOPPED: Final = {b"T", b"t"}
 def pid_space() -> int | None:
     """Return 16 bits that name the processes among which a pid means the same one.
 
-    Containers, and other machines, have pids of their own. None if the system does not tell.
+    Containers, and other machines, have pids of their own. None if the system does not tell, or
+    tells of the processes outside of this one's container.
     """
     with suppress(OSError):
+        if OWN_PROCESS.readlink().name != str(os.getpid()):
+            return None
         namespace = BOOT_ID.read_bytes() + str(PID_NAMESPACE.stat().st_ino).encode()
         return xxhash.xxh3_64_intdigest(namespace) & 0xFFFF
     return None

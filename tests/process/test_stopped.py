@@ -137,3 +137,14 @@ def test_where_the_system_tells_nothing_pids_mean_nothing(
     monkeypatch.setattr(stopped, "PID_NAMESPACE", tmp_path / "hidden")
 
     assert pid_space() is None
+
+
+def test_where_proc_has_the_pids_of_others_pids_mean_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """As after `unshare --pid` without `--mount-proc`: process 7 there is another one than here."""
+    foreign = tmp_path / "self"
+    foreign.symlink_to("4711")
+    monkeypatch.setattr(stopped, "OWN_PROCESS", foreign)
+
+    assert pid_space() is None

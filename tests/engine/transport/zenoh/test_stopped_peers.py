@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from aionode._process.stopped import pid_space
+from aionode.engine.transport import network
 from aionode.engine.transport.network import new_participant
 from aionode.engine.transport.zenoh.connections import stopped_peers
 from aionode.engine.transport.zenoh.connections.stopped_peers import LOOK_S, LOOKS, StoppedPeers
@@ -49,8 +51,10 @@ class Scene:
 
     def connect(self, pid: int, monkeypatch: pytest.MonkeyPatch) -> str:
         """Connect with a process of this machine; return its id."""
+        space = pid_space()
         with monkeypatch.context() as patched:
             patched.setattr("os.getpid", lambda: pid)
+            patched.setattr(network, "pid_space", lambda: space)
             peer = new_participant()
         self.peers.add(peer)
         return peer
