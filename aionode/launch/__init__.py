@@ -127,7 +127,7 @@ class Plan:
             warnings = list(left_out_texts(context.left_out, steps))
             if warnings and not (self._skip_missing or any(map(does_something, steps))):
                 windows = ", ".join(context.left_out)
-                problem = f"starts nothing but windows that are not here: {windows}; {INSTEAD}"
+                problem = f"starts only graphical tools that are missing: {windows}; {INSTEAD}"
                 raise LaunchFileError(self.path, problem)
             self._steps = [
                 *self._misspelt(context.declared),
@@ -186,7 +186,7 @@ def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iter
                 yield f"the {step.handler.describe()} never comes: that is left out"
 
 
-INSTEAD: Final = "the page of `aionode gateway`, and Foxglove by it, show the robot"
+INSTEAD: Final = "use the page of `aionode gateway`, or Foxglove connected to it"
 
 
 def does_something(step: Step) -> bool:

@@ -127,7 +127,7 @@ def test_windows_that_are_not_here_are_left_out_without_being_asked(files: Files
     assert [text.split("'")[1] for text in logs] == [
         *("rviz2", "rqt_robot_monitor", "image_view", "plotjuggler", "rqt_graph"),
     ]
-    assert all("the page of `aionode gateway`, and Foxglove" in text for text in logs)
+    assert all("the page of `aionode gateway`, or Foxglove" in text for text in logs)
 
 
 def test_a_file_of_nothing_but_windows_is_refused(files: Files) -> None:
@@ -136,7 +136,7 @@ def test_a_file_of_nothing_but_windows_is_refused(files: Files) -> None:
         'TimerAction(period=1.0, actions=[Node(package="rviz2", executable="rviz2")]),', ""
     )
 
-    with pytest.raises(LaunchFileError, match=r"nothing but windows .*: rviz2, rqt_robot_monitor"):
+    with pytest.raises(LaunchFileError, match=r"only graphical tools .*: rviz2, rqt_robot_monitor"):
         planned(files, text)
 
 
@@ -166,7 +166,7 @@ def test_a_program_starts_without_the_terminal_that_is_not_here(files: Files) ->
     found = planned(files, text)
 
     assert [each["argv"] for each in found if "argv" in each] == [["driver"]]
-    assert any("'/no/xterm' for it is not there" in each.get("log", "") for each in found)
+    assert any("its terminal '/no/xterm' is missing" in each.get("log", "") for each in found)
 
 
 def test_what_is_wrong_otherwise_stays_an_error(files: Files) -> None:

@@ -26,8 +26,8 @@ from launch.utilities.type_utils import perform_typed_substitution
 __all__ = ["ExecuteLocal", "ExecuteProcess"]
 
 WITHOUT_TERMINAL: Final = (
-    "{}: the terminal '{}' for it is not there, so it runs without one; if it reads keys, run it "
-    "in a terminal of yours instead"
+    "{}: its terminal '{}' is missing, so it runs without one; if it reads keys, run it in a "
+    "terminal of your own instead"
 )
 
 
