@@ -9,6 +9,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -344,7 +345,8 @@ def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None])
     """Do several jobs at the same time, each in a process of its own.
 
     Raises:
-        BagError, ContractError, DatasetError: as `run`; what is done by then stays.
+        BagError, ContractError, DatasetError: as `run`, or a process was killed; what is done by
+            then stays.
     """
     context = multiprocessing.get_context("spawn")
     told = context.SimpleQueue()
@@ -361,6 +363,13 @@ def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None])
                     each.result()
             while not told.empty():
                 tell(told.get())
+        except BrokenProcessPool as error:
+            raise DatasetError(
+                missing[0].folder,
+                "a process of the export ended early: it was killed, as for lack of memory, or the "
+                "program that calls export() does so without `if __name__ == '__main__':`",
+                "start it again with one job at a time; what is done stays",
+            ) from error
         finally:
             pool.shutdown(cancel_futures=True)
 

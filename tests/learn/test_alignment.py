@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, Phase, event, given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +18,7 @@ from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Contract, export
 from aionode.learn._alignment import Series, aligned, in_order
-from aionode.learn._report import topic_of
+from aionode.learn._report import lag_of, topic_of
 from tests.support.demonstrations import (
     HEIGHT,
     SPEED,
@@ -167,6 +168,27 @@ def test_what_a_picture_and_a_joint_show_agrees_within_the_age_that_is_told(
     inside = np.delete(steps, [start - 1 for start in rows.starts if start])
     assert inside.max(initial=0) <= 1.5 / fps + 1e-9
     assert (steps > 0).all()
+
+
+@pytest.mark.parametrize("rows", [0, 1, 4, 12])
+@pytest.mark.parametrize("is_speed", [False, True])
+def test_how_long_an_observation_follows_its_command_is_told(rows: int, is_speed: bool) -> None:
+    """A robot that answers late: of the position that was commanded, or of the speed."""
+    noise = np.random.default_rng(0).normal(size=400)
+    commanded = np.convolve(noise, np.ones(8) / 8, "same")
+    followed = np.roll(commanded, rows + 1)  # a row has the command of one period later
+    if is_speed:
+        followed = np.cumsum(followed) - followed[0]
+        followed = np.roll(followed, 1)
+    found = lag_of(commanded[50:350], followed[50:350], 30)
+    assert found == pytest.approx(rows / 30, abs=0.5 / 30)
+
+
+def test_no_lag_is_told_of_what_does_not_follow() -> None:
+    """A guess would be taken for a measurement."""
+    first, second = np.random.default_rng(0).normal(size=(2, 300))
+    assert lag_of(first, second, 30) is None
+    assert lag_of(first, np.zeros(300), 30) is None
 
 
 # With pictures

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import re
 import shutil
 import signal
@@ -395,6 +396,21 @@ def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
     result = export(tmp_path / "out", bags, jobs=2, progress=lambda *each: told.append(each))
     assert result.episodes == 2
     assert told[-1][0] <= told[-1][1]
+
+
+@pytest.mark.processes
+def test_a_process_of_an_export_that_was_killed_is_one_sentence(tmp_path: Path) -> None:
+    """As for lack of memory: the others' work stays, and one job at a time needs less."""
+    bags = [demonstration(tmp_path / f"run{number}", length_sec=0.5) for number in range(2)]
+
+    def kill(done: int, whole: int) -> None:
+        del done, whole
+        for child in multiprocessing.active_children():
+            child.kill()
+
+    with pytest.raises(DatasetError, match="a process of the export ended early: it was killed"):
+        export(tmp_path / "out", bags, contract=contract(), jobs=2, progress=kill)
+    assert export(tmp_path / "out", bags, contract=contract(), jobs=1).episodes == 2
 
 
 def test_a_check_finds_a_video_with_a_frame_too_few(tmp_path: Path) -> None:
