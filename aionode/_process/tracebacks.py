@@ -18,7 +18,7 @@ TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
 
 LIBRARY = Path(__file__).parents[1]
 EXAMPLES = LIBRARY / "examples"
-GENERATED = re.compile(r"<(snapshot of|encode|write|decode|read|construct) [\w/]+>")
+GENERATED = r"<(snapshot of|encode|write|decode|read|construct) [\w/]+>"
 """The names of functions generated for message types."""
 STANDARD_LIBRARY = Path(os.__file__).parent
 
@@ -54,7 +54,7 @@ def is_of_library(filename: str) -> bool:
     """Return whether a source file, or what takes its place, is aionode's own; examples are not."""
     folders = Path(filename).parents
     is_own = LIBRARY in folders and EXAMPLES not in folders
-    return is_own or GENERATED.fullmatch(filename) is not None
+    return is_own or re.fullmatch(GENERATED, filename) is not None
 
 
 def is_of_user(frame: FrameType) -> bool:

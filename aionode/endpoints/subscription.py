@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.core.callback_runner import (
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
 
     from aionode.clock import TimeBase
+    from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints.core.callback_runner import OnError
     from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.core.subscription_reader import Take
@@ -189,6 +189,9 @@ class Subscription(Endpoint, Generic[ItemT]):
                 self.set_content_filter, filter_expression, expression_parameters
             )
             return
+        # Imported on demand: few subscriptions have one.
+        from aionode.content_filter import ContentFilterOptions, compile_filter
+
         self._refuse_if_destroyed("set content filter")
         accepts = None
         options = ContentFilterOptions(filter_expression, list(expression_parameters))
@@ -201,6 +204,8 @@ class Subscription(Endpoint, Generic[ItemT]):
 
     def get_content_filter(self) -> ContentFilterOptions:
         """Return the content filter; its expression is empty if there is none."""
+        from aionode.content_filter import ContentFilterOptions
+
         given = self._content_filter or ContentFilterOptions()
         return ContentFilterOptions(given.filter_expression, list(given.expression_parameters))
 

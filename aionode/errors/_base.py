@@ -27,7 +27,7 @@ def shortened(text: str, limit: int = MAX_TEXT) -> str:
     return f"{text[:half]} […{len(text) - 2 * half} characters…] {text[-half:]}"
 
 
-UNSHOWN = re.compile(
+UNSHOWN = (  # compiled by its first use
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 """Control characters except tab and newline, bidirectional controls, and surrogates."""
@@ -42,9 +42,9 @@ def escaped(text: str, *, one_line: bool = False) -> str:
     """
     if one_line:
         text = text.replace("\n", "\\n")
-    if UNSHOWN.search(text) is None:
+    if re.search(UNSHOWN, text) is None:
         return text
-    return UNSHOWN.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
+    return re.sub(UNSHOWN, lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def brief(value: object) -> str:

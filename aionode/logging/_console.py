@@ -130,10 +130,16 @@ class LineFormatter(logging.Formatter):
     def __init__(self, text: str = DEFAULT_FORMAT) -> None:
         super().__init__()
         text = re.sub(r"\\[abnrt]", lambda match: ESCAPES[match[0]], text)
-        parts = re.split(r"\{(" + "|".join(TOKENS) + r")\}", text)
-        literals, tokens = parts[::2], parts[1::2]
-        self._template = "%s".join(literal.replace("%", "%%") for literal in literals)
-        self._values = [TOKENS[token] for token in tokens]
+        self._values: list[Callable[[logging.LogRecord], object]] = []
+        self._template = re.sub(r"\{(\w+)\}", self._place_of, text.replace("%", "%%"))
+
+    def _place_of(self, token: re.Match[str]) -> str:
+        """Return the place of a token's value in the template."""
+        value = TOKENS.get(token[1])
+        if value is None:
+            return token[0]
+        self._values.append(value)
+        return "%s"
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line, without a newline."""

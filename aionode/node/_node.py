@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
 from aionode import names, qos
 from aionode.clock import Clock
-from aionode.endpoints.client import Client
 from aionode.endpoints.core.end_record import NodeEnd, failure_text
 from aionode.endpoints.core.endpoint import EndpointSetup
 from aionode.endpoints.core.future import asks
@@ -54,6 +53,7 @@ if TYPE_CHECKING:
 
     from aionode.action import ActionClient, ActionServer, ServerGoalHandle
     from aionode.content_filter import ContentFilterOptions
+    from aionode.endpoints.client import Client
     from aionode.endpoints.core.callback_runner import OnError
     from aionode.endpoints.core.subscription_reader import MessageInfo, Parts, Take
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -403,6 +403,8 @@ class Node(ParameterMethods, GraphQueries):
     @property
     def clients(self) -> list[Client[Any, Any]]:
         """The clients of this node."""
+        from aionode.endpoints.client import Client  # nodes without clients start faster
+
         return core_of(self).entities_of(Client)
 
     @property
@@ -651,6 +653,8 @@ class Node(ParameterMethods, GraphQueries):
             InvalidServiceNameException: `srv_name` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
+        from aionode.endpoints.client import Client  # nodes without clients start faster
+
         core_of(self).refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
         setup = endpoint_setup(self, EndpointKind.CLIENT, srv_name, srv_type, qos_profile)

@@ -7,8 +7,9 @@ The parameter ``qos_overrides./chatter.publisher.depth`` sets the depth of a pub
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, Literal, Protocol
+
+import msgspec
 
 from aionode.clock import Duration
 from aionode.errors import (
@@ -37,8 +38,7 @@ POLICIES = {
 }
 
 
-@dataclass(frozen=True)
-class QoSOverridingOptions:
+class QoSOverridingOptions(msgspec.Struct, frozen=True):
     """Selects the policies of an endpoint that parameters can override.
 
     Attributes:

@@ -65,11 +65,12 @@ KINDS: Final = {
 KIND_CHUNKS: Final = {kind: chunk for chunk, kind in KINDS.items()}
 ACTION_KINDS: Final = {"AS": EndpointKind.SERVER, "AC": EndpointKind.CLIENT}
 
-ZID: Final = re.compile(r"[0-9a-f]{1,32}\Z")
+# Compiled by their first use, as most programs meet no bridge.
+ZID: Final = r"[0-9a-f]{1,32}\Z"
 # ROS names, which contain nothing that Zenoh or a bridge would interpret differently.
-NAME: Final = re.compile(r"[A-Za-z0-9_]+(/[A-Za-z0-9_]+)*\Z")
-TYPE: Final = re.compile(r"[A-Za-z0-9_]+/(msg|srv|action)/[A-Za-z0-9_]+\Z")
-HASH: Final = re.compile(r"RIHS01_[0-9a-f]{64}\Z")
+NAME: Final = r"[A-Za-z0-9_]+(/[A-Za-z0-9_]+)*\Z"
+TYPE: Final = r"[A-Za-z0-9_]+/(msg|srv|action)/[A-Za-z0-9_]+\Z"
+HASH: Final = r"RIHS01_[0-9a-f]{64}\Z"
 
 ACTION_PART: Final = "/_action/"
 SEND_GOAL: Final = "_SendGoal"
@@ -130,7 +131,7 @@ def bridge_key(name: str) -> str:
         ValueError: it is not a fully qualified ROS name.
     """
     key = name.strip("/")
-    if not NAME.match(key):
+    if not re.match(NAME, key):
         raise ValueError(f"{name!r} is not the name of a topic, service or action")
     return key
 
@@ -138,7 +139,7 @@ def bridge_key(name: str) -> str:
 def namespace_prefix(namespace: str) -> str:
     """Return the prefix of a bridge's keys, such as ``bot1/``; empty for the root namespace."""
     prefix = namespace.strip("/")
-    return f"{prefix}/" if NAME.match(prefix) else ""
+    return f"{prefix}/" if re.match(NAME, prefix) else ""
 
 
 def takes_for_its_own(prefix: str, key: str) -> bool:
@@ -172,11 +173,11 @@ def bridge_token(
         ValueError: a part is not what a bridge expects.
     """
     key = bridge_key(name)
-    if not ZID.match(zid):
+    if not re.match(ZID, zid):
         raise ValueError(f"{zid!r} is not a session id")
     if kind not in KINDS and kind not in ACTION_KINDS:
         raise ValueError(f"{kind!r} is not a kind of token")
-    if not TYPE.match(type_name):
+    if not re.match(TYPE, type_name):
         raise ValueError(f"{type_name!r} is not the name of a type")
     chunks = ["@", zid, MARK, kind, key.replace("/", SLASH), type_name.replace("/", SLASH)]
     if kind in {"MP", "MS"}:
@@ -192,7 +193,7 @@ def qos_chunk(qos: QoSProfile, type_hash: str) -> str:
     reliable = int(qos.reliability is ReliabilityPolicy.RELIABLE)
     transient = int(qos.durability is DurabilityPolicy.TRANSIENT_LOCAL)
     text = f":{reliable}:{transient}:{int(keeps_all(qos))},{depth_of(qos)}"
-    return f"{text}:typehash={type_hash};" if HASH.match(type_hash) else text
+    return f"{text}:typehash={type_hash};" if re.match(HASH, type_hash) else text
 
 
 def token_of(zid: str, endpoint: EndpointInfo) -> str:
@@ -229,7 +230,7 @@ def parse_bridge_token(key: str) -> BridgeToken | None:
     name, type_name = (chunk.replace(SLASH, "/") for chunk in chunks[4:6])
     if kind not in KINDS and kind not in ACTION_KINDS:
         return None
-    if not (NAME.match(name) and TYPE.match(type_name)):
+    if not (re.match(NAME, name) and re.match(TYPE, type_name)):
         return None
     if kind not in {"MP", "MS"}:
         return BridgeToken(zid, kind, name, type_name)
@@ -250,7 +251,7 @@ def parse_topic(token: BridgeToken, text: str) -> BridgeToken | None:
     if not all(part in {"", "0", "1"} for part in (reliability, durability, kind)):
         return None
     match = re.search(r"typehash=([^;]*)", fields[4]) if len(fields) > 4 else None
-    type_hash = match[1] if match and HASH.match(match[1]) else ""
+    type_hash = match[1] if match and re.match(HASH, match[1]) else ""
     known_depth = int(depth) if depth.isascii() and depth.isdigit() and len(depth) < 10 else 0
     qos = QoSProfile(
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
@@ -320,7 +321,7 @@ def parse_node(key: str, payload: bytes) -> BridgedNode | None:
     if len(chunks) < 6 or chunks[2:4] != ["ros2", "node"]:
         return None
     gid, name = chunks[4].replace(".", ""), chunks[5].replace(SLASH, "/").strip("/")
-    if not NAME.match(name):
+    if not re.match(NAME, name):
         return None
     try:
         described = json.loads(payload)

@@ -16,7 +16,6 @@ from typing import Any, TypeAlias, TypeVar
 
 from aionode.engine.wire.cdr._decoder import generate_decoder
 from aionode.engine.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
-from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.engine.wire.cdr._family import OWN, MessageFamily
 from aionode.engine.wire.cdr._layout import has_buffers, has_views
 from aionode.errors import MessageError
@@ -159,6 +158,8 @@ def decoder_of(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
         return constructor
 
     def decode_carefully(data: bytes) -> Any:
+        from aionode.engine.wire.cdr._fallback_decoder import decode_slowly  # rarely needed
+
         return decode_slowly(cls, memoryview(data), family)
 
     def decode_other(data: Any) -> Any:
@@ -172,6 +173,8 @@ def view_decoder(cls: Any, family: MessageFamily) -> Callable[[memoryview], Any]
     """Return the decoder of a class for data that is not a bytes object."""
 
     def decode_carefully(data: memoryview) -> Any:
+        from aionode.engine.wire.cdr._fallback_decoder import decode_slowly  # rarely needed
+
         return decode_slowly(cls, data, family)
 
     return generate_decoder(cls, decode_carefully, family=family)
