@@ -210,7 +210,7 @@ def test_the_launch_files_of_the_setup_assistant_start_what_aionode_has(arm: Fil
 )
 def test_the_other_launch_files_name_what_they_need(arm: Files, launch: str, package: str) -> None:
     """They get as far as the C++ program, which aionode does not have."""
-    with pytest.raises(LaunchFileError, match=f"{package}('|; the page)"):
+    with pytest.raises(LaunchFileError, match=f"{package}('|; use the page)"):
         planned(arm, f"{launch}(MoveItConfigsBuilder('arm').to_moveit_configs())")
 
 
