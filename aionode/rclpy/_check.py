@@ -117,27 +117,87 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
         FileNotFoundError: There is no such file or folder.
     """
     named = [file for path in paths for file in files_of(Path(path))]
-    needed, optional = deque(named), deque[Path]()
-    texts: list[str] = []
-    complete = True
-    done: set[Path] = set()
-    while needed or optional:
-        is_needed = bool(needed)
-        file = (needed or optional).popleft()
-        if file.resolve() in done:
-            continue
-        done.add(file.resolve())
-        report = report_on(file)
-        if report.lines or file in named:
-            texts.append("\n".join([str(file), *report.lines, ""]))
-        complete = complete and (report.is_complete or not is_needed)
-        (needed if is_needed else optional).extend(report.needed)
-        optional.extend(report.optional)
-    return "".join(texts), complete
+    uses = {file.resolve(): Use(file, is_needed=True) for file in named}
+    reports = Reports()
+    for program in list(uses.values()):
+        for file, report, is_needed in reports.of_program(program.file):
+            use = uses.setdefault(file.resolve(), Use(file))
+            use.is_needed |= is_needed
+            if use is program:
+                use.as_program = report
+            else:
+                use.as_module.append(report)
+    texts = (
+        "\n".join([str(use.file), *use.report.lines, ""])
+        for use in uses.values()
+        if use.report.lines or use.as_program is not None
+    )
+    return "".join(texts), all(use.report.is_complete for use in uses.values() if use.is_needed)
 
 
-def report_on(file: Path) -> Report:
-    """Report the imports of one file."""
+@dataclass
+class Use:
+    """What is known of a file.
+
+    Attributes:
+        file: The file.
+        is_needed: Whether it is a program, or a program cannot do without it.
+        as_program: Its imports, if it is run itself; None for a file that was not named.
+        as_module: Its imports, for each program that imports it: they may lie beside that.
+    """
+
+    file: Path
+    is_needed: bool = False
+    as_program: Report | None = None
+    as_module: list[Report] = field(default_factory=list)
+
+    @property
+    def report(self) -> Report:
+        """The imports that count: those of the program it is, or else of the programs it serves."""
+        if self.as_program is not None and (self.as_program.is_complete or not self.as_module):
+            return self.as_program
+        incomplete = (report for report in self.as_module if not report.is_complete)
+        return next(incomplete, self.as_module[0])
+
+
+class Reports:
+    """The imports of files, each read once for each folder that makes a difference."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Path, tuple[Path, ...]], Report] = {}
+
+    def of_program(self, program: Path) -> Iterator[tuple[Path, Report, bool]]:
+        """Yield a program and the user's modules that it imports, and whether it needs them."""
+        folders = own_folders(program)
+        needed, optional = deque([program]), deque[Path]()
+        done: set[Path] = set()
+        while needed or optional:
+            is_needed = bool(needed)
+            file = (needed or optional).popleft()
+            if file.resolve() in done:
+                continue
+            done.add(file.resolve())
+            report = self.of(file, folders)
+            yield file, report, is_needed
+            (needed if is_needed else optional).extend(report.needed)
+            optional.extend(report.optional)
+
+    def of(self, file: Path, folders: Sequence[Path]) -> Report:
+        """Return the imports of a file for a program that has these folders on its path."""
+        own = own_folders(file)
+        report = self._read(file, tuple(own))
+        more = [folder for folder in folders if folder not in own]
+        return report if report.is_complete or not more else self._read(file, (*own, *more))
+
+    def _read(self, file: Path, folders: tuple[Path, ...]) -> Report:
+        key = (file.resolve(), folders)
+        if key not in self._known:
+            self._known[key] = report_on(file, folders)
+        return self._known[key]
+
+
+def report_on(file: Path, folders: Sequence[Path]) -> Report:
+    """Report the imports of one file; folders are those whose modules it finds."""
     try:
         imports = imports_of(ast.parse(file.read_bytes(), str(file)))
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -149,7 +209,7 @@ def report_on(file: Path) -> Report:
         if is_in_python(wanted.module):
             continue
         optional = wanted.optional or any(missing.isdisjoint(first) for first in wanted.instead_of)
-        finding = find(wanted, file)
+        finding = find(wanted, file, folders)
         sources = [file for file in finding.files if file.suffix == ".py"]
         (report.optional if optional else report.needed).extend(sources)
         if finding.is_there:
@@ -297,7 +357,7 @@ def is_suppressing(entered: ast.expr) -> bool:
     return name == "suppress" and any(map(catches_import_error, entered.args))
 
 
-def find(wanted: Import, file: Path) -> Finding:
+def find(wanted: Import, file: Path, folders: Sequence[Path]) -> Finding:
     """Find where an import of a file comes from."""
     if wanted.module.startswith("."):
         return beside(wanted, file)
@@ -307,7 +367,7 @@ def find(wanted: Import, file: Path) -> Finding:
         return in_aionode(module, name)
     if source is not None:
         return Finding(module, source)
-    for folder in own_folders(file):
+    for folder in folders:
         if files := files_on(folder, module, name):
             return Finding(module, "beside the program", files=files)
     package, _, inside = module.partition(".")

@@ -326,3 +326,49 @@ def test_a_compiled_module_beside_the_program_is_there(program: Path) -> None:
     (program.parent / f"fast{EXTENSION_SUFFIXES[0]}").write_bytes(b"\0")
 
     assert findings(program, "import fast\n") == ({"fast": "beside the program"}, True)
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Path:
+    """A program whose package imports its own modules by their full names, and one beside it."""
+    (tmp_path / "backend" / "ws").mkdir(parents=True)
+    (tmp_path / "backend" / "__init__.py").write_text("")
+    (tmp_path / "backend" / "settings.py").write_text("")
+    (tmp_path / "backend" / "ws" / "arm.py").write_text("import backend.settings, stream\n")
+    (tmp_path / "stream.py").write_text("")
+    program = tmp_path / "server.py"
+    program.write_text("import backend.ws.arm\n")
+    return program
+
+
+@pytest.mark.parametrize("of_folder", [False, True])
+def test_modules_find_what_lies_beside_the_program_that_imports_them(
+    server: Path, of_folder: bool
+) -> None:
+    """As in Python, whose path begins with the folder of the program, not with that of a module."""
+    text, complete = check([str(server.parent if of_folder else server)])
+
+    shown = "  backend.settings  beside the program\n  stream            beside the program\n"
+    assert f"{server.parent / 'backend' / 'ws' / 'arm.py'}\n{shown}" in text
+    assert complete
+
+
+def test_a_module_alone_does_not_find_what_lies_beside_its_program(server: Path) -> None:
+    """Whoever runs it himself would see it fail."""
+    text, complete = check([str(server.parent / "backend" / "ws" / "arm.py")])
+
+    assert "  stream            missing: " in text
+    assert not complete
+
+
+def test_a_module_is_incomplete_if_one_of_its_programs_lacks_a_part(server: Path) -> None:
+    """That program would fail."""
+    other = server.parent / "other" / "tool.py"
+    other.parent.mkdir()
+    (other.parent / "backend").symlink_to(server.parent / "backend")
+    other.write_text("import backend.ws.arm\n")
+
+    text, complete = check([str(server), str(other)])
+
+    assert "  stream            missing: " in text
+    assert not complete
