@@ -26,12 +26,14 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "add_analyzer": "_diagnostics.add_analyzer",
         "aggregator_node": "_diagnostics.aggregator_node",
     },
+    "foxglove_bridge": {"foxglove_bridge": "_bridges.foxglove_bridge"},
     "image_transport": {"republish": "_camera.republish"},
     "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
+    "rosbridge_server": {"rosbridge_websocket": "_bridges.rosbridge_websocket"},
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
     "teleop_twist_joy": {"teleop_node": "_joy.teleop_node"},
     "tf2_ros": {
@@ -53,10 +55,14 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "turtlesim_node": "_turtlesim.node",
     },
     "twist_mux": {"twist_mux": "_twist_mux"},
+    "urdf_launch": {},
     "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
     "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},
 }
-"""The module of `aionode.programs` for an executable, by package and name."""
+"""The module of `aionode.programs` for an executable, by package and name.
+
+A package without executables has data only.
+"""
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
     "image_transport": {

@@ -6,6 +6,7 @@ import os as os
 import pathlib as pathlib
 import re
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
 from aionode import errors
@@ -42,23 +43,20 @@ def get_package_prefix(package_name: str) -> str:
         PackageNotFoundError: There is no such package; the error suggests similar names.
         ValueError: Its name is not valid.
     """
-    source = checked(package_name).sources().get(package_name)
-    return str(source or installed(package_name))
+    packages = checked(package_name)
+    source = packages.sources().get(package_name)
+    return str(source or looked_up(package_name, packages.prefix))
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
     """Return the folder with the data of a package, with a warning if it does not exist.
 
     For a package of the workspace, which needs no build, this is its source folder, or a folder of
-    links if its rules install files elsewhere.
+    links if its rules install files elsewhere; for one of ROS that is not there it is what aionode
+    has of it.
     """
-    packages = checked(package_name)
-    is_source = package_name in packages.sources()
-    path = (
-        packages.share(package_name)
-        if is_source
-        else installed(package_name) / "share" / package_name
-    )
+    below = Path("share", package_name)
+    path = looked_up(package_name, checked(package_name).share, below)
     if print_warning and stand_in(package_name) is None and not path.exists():
         warning = f"Share directory for {package_name} ({path}) does not exist."
         warnings.warn(warning, stacklevel=2)
@@ -80,14 +78,14 @@ def checked(package_name: str) -> Packages:
     return here()
 
 
-def installed(package_name: str) -> Path:
-    """Return the folder into which ROS's tools or pip installed a package."""
+def looked_up(package_name: str, look_up: Callable[[str], Path], below: Path = Path()) -> Path:
+    """Return a folder of a package, or its stand-in, in which it would be below the prefix."""
     try:
-        return here().prefix(package_name)
+        return look_up(package_name)
     except errors.PackageNotFoundError as error:
         other = stand_in(package_name)
         if other is not None:
-            return other
+            return other / below
         problem = f"package '{package_name}' not found, searching: {list(error.places)}"
         hint = f"; did you mean {error.suggestions[0]}?" if error.suggestions else ""
         raise PackageNotFoundError(problem + hint) from None

@@ -1,0 +1,1 @@
+"""Programs in whose place the gateway serves clients."""
