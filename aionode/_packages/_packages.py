@@ -98,9 +98,8 @@ class Packages:
         source = self.sources().get(name)
         prefix = installed_at(name)
         if source is None and prefix is None:
-            standard = standard_executables(name)
-            if standard:
-                return standard
+            if name in standard_packages():
+                return standard_executables(name)
             raise self.not_found(name, standard_packages())
         installed = (
             standard_executables(name) if prefix is None else installed_executables(prefix, name)

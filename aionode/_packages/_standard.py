@@ -207,7 +207,7 @@ def program_module(package: str, name: str) -> str | None:
 
 
 def standard_packages() -> list[str]:
-    """Return the names of the packages of which aionode has programs."""
+    """Return the names of the packages of which aionode has programs or data."""
     return sorted(MODULES)
 
 
