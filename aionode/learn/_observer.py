@@ -241,4 +241,4 @@ class Observations:
         ages = {
             topic: None if age_ns is None else age_ns / S_TO_NS for topic, age_ns in ages_ns.items()
         }
-        return StaleError(ages, self._limits)
+        return StaleError(ages, {**self._limits, self._topic: self._limit_ns() / S_TO_NS})

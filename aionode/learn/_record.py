@@ -231,6 +231,7 @@ class Episodes:
                 topics=self._topics,
                 context=self._context,
                 node_name=f"{self.node.get_name()}_recorder",
+                use_sim_time=self.node.get_parameter("use_sim_time").value,
                 custom_data={
                     TASK_KEY: task,
                     CONTRACT_KEY: json.dumps(self.contract.to_dict()),

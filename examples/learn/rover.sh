@@ -1,4 +1,4 @@
-# A rover learns to drive to the ball, in an empty folder: pip install 'aionode[bag,lerobot]'
+# A rover learns to drive to the ball, in an empty folder: pip install 'aionode[bag,gateway,lerobot]'
 set -e
 
 python -m aionode.examples.rover &
@@ -6,6 +6,6 @@ rover=$!
 trap 'kill $rover' EXIT
 
 python -m aionode.examples.rover.learn record
-aionode learn export --lerobot ball --contract contract.yaml --max-rate-error 0.2 demonstrations
+aionode learn export --lerobot ball --max-rate-error 0.2 --max-dropped 0.2 demonstrations
 python -m aionode.examples.rover.learn train
 python -m aionode.examples.rover.learn drive

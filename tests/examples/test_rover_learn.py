@@ -12,7 +12,7 @@ import numpy as np
 from aionode import Node
 from aionode.examples.rover.learn import CONTRACT, demonstrate, drive, fitted
 from aionode.examples.rover.simulator import Simulator
-from aionode.learn import Contract, export
+from aionode.learn import Contract, Episodes, export
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
@@ -43,10 +43,12 @@ async def test_the_rover_learns_to_drive_to_the_ball(
         Simulator(context=aionode_context) as simulator,
         Node("learner", context=aionode_context) as node,
     ):
-        bags = [tmp_path / str(number) for number in range(10)]
-        for number, path in enumerate(bags):
-            await passing(manual_clock, demonstrate(node, path, number))
-        export(tmp_path / "ball", bags, contract=Contract.load(CONTRACT))
+        async with Episodes(
+            tmp_path / "demonstrations", Contract.load(CONTRACT), context=aionode_context
+        ) as episodes:
+            for seed in range(10):
+                await passing(manual_clock, demonstrate(node, episodes, seed))
+        export(tmp_path / "ball", [episodes.folder])
         weights = fitted(tmp_path / "ball")
 
         for heading in (2.5, -1.3):

@@ -1,15 +1,16 @@
 """The rover learns to drive to the ball: ``python -m aionode.examples.rover.learn VERB``.
 
 ``record`` has a script demonstrate it ten times, and leaves `contract.yaml` beside the recordings:
-what the policy sees and commands. `aionode learn export` makes a data set of both. ``train`` fits a
+what the policy sees and commands. `aionode learn export` makes a data set of them. ``train`` fits a
 policy to it by least squares, and ``drive`` lets that policy drive. The rover runs besides. It
-needs ``pip install 'aionode[bag,lerobot]'``.
+needs ``pip install 'aionode[bag,gateway,lerobot]'``.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import itertools
 import random
 import shutil
 import sys
@@ -20,6 +21,7 @@ import numpy as np
 
 import aionode
 from aionode import Node
+from aionode.errors import LeaseExpiredError, StaleError
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn import Contract
 
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from aionode.learn import ActorStats, Observations
+    from aionode.learn import ActorStats, Episodes, Observations
 
     Numbers = npt.NDArray[np.float64]
 
@@ -40,6 +42,9 @@ EPISODES = 10
 LONGEST_SEC = 20.0
 PARTS = 16
 CHUNK = 4
+MOST_CHUNKS = 200
+"""As many last about a minute and a half."""
+
 NEAR = 2_400
 """As many pixels show the ball half a metre ahead."""
 
@@ -85,20 +90,13 @@ async def turn_away(node: Node, seed: int) -> None:
             actor.send([0.0, 1.0])
 
 
-async def demonstrate(node: Node, path: Path, seed: int) -> float:
-    """Record one episode in a bag, and return how many seconds it took."""
-    from aionode.bag import Recorder  # the others need no bags
-
-    contract = Contract.load(CONTRACT)
+async def demonstrate(node: Node, episodes: Episodes, seed: int) -> float:
+    """Record one episode, and return how many seconds it took."""
     await turn_away(node, seed)
+    contract = episodes.contract
     async with (
         contract.observe(node) as observations,
-        Recorder(
-            path,
-            topics=["/camera/image", "/cmd_vel"],
-            context=node.context,
-            use_sim_time=node.get_parameter("use_sim_time").value,
-        ),
+        episodes.record(),
         contract.act(node) as actor,
     ):
         async for seconds, picture in timed(observations):
@@ -107,6 +105,26 @@ async def demonstrate(node: Node, path: Path, seed: int) -> float:
             if seconds > LONGEST_SEC or (0 < speed < 0.02 and abs(turn) < 0.05):
                 break
     return seconds
+
+
+async def record(node: Node) -> None:
+    """Record ten episodes; one in which the camera stalled is a failure, and recorded again."""
+    from aionode.learn import Episodes  # the others need no bags
+
+    shutil.copy(CONTRACT, CONTRACT.name)
+    done = failed = 0
+    async with Episodes(DEMONSTRATIONS, Contract.load(CONTRACT)) as episodes:
+        while done < EPISODES:
+            try:
+                seconds = await demonstrate(node, episodes, done)
+            except (LeaseExpiredError, StaleError) as error:
+                failed += 1
+                if failed == EPISODES:
+                    raise
+                print(f"once more: {error}")
+                continue
+            print(f"episode {done}: {seconds:.1f} s")
+            done += 1
 
 
 async def timed(
@@ -148,8 +166,11 @@ class Arrived(Exception):  # noqa: N818  # not an error
 
 async def drive(node: Node, weights: Numbers) -> ActorStats:
     """Let the policy drive until the ball is near, and return what was sent."""
+    asked = itertools.count()
 
     def policy(observation: dict[str, npt.NDArray[Any]]) -> Numbers:
+        if next(asked) == MOST_CHUNKS:
+            raise LookupError("the policy does not find the ball; record more demonstrations")
         seen = look(observation["observation.images.front"])
         chunk = (seen @ weights).reshape(CHUNK, 2)
         if seen[PARTS] > 0.9 and abs(chunk).max() < 0.1:
@@ -179,10 +200,7 @@ async def main() -> None:
             await turn_away(node, EPISODES)  # as no demonstration began
             print(f"arrived: {await drive(node, np.load(WEIGHTS))}")
             return
-        shutil.copy(CONTRACT, CONTRACT.name)
-        for number in range(EPISODES):
-            seconds = await demonstrate(node, DEMONSTRATIONS / f"episode_{number:02}", number)
-            print(f"episode {number}: {seconds:.1f} s")
+        await record(node)
 
 
 if __name__ == "__main__":
