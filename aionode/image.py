@@ -369,15 +369,20 @@ def compress_depth(
     )
 
 
-def decompress(image: CompressedImage) -> Image:
+def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> Image:
     """Decompress an image to mono8, rgb8, rgba8 or mono16; the header is kept.
 
     A depth image of image_transport's ``compressedDepth`` becomes 16UC1 or 32FC1, as it was;
     unknown depths are 0 or NaN.
 
+    Args:
+        image: The message.
+        size: The width and height that it is to have. A few bytes can claim any size, which is
+            refused before it takes memory.
+
     Raises:
         TypeError: `image` is not a CompressedImage.
-        MessageError: Its data cannot be read (a ValueError).
+        MessageError: Its data cannot be read, or it has another size (a ValueError).
         ModuleNotFoundError: Pillow is not installed, which RVL does not need.
     """
     if not isinstance(image, CompressedImage):
@@ -392,6 +397,11 @@ def decompress(image: CompressedImage) -> Image:
         return depth_of(picture, DEPTH_HEAD.unpack_from(data), image.format)
     try:
         picture = pillow().open(io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data))
+        if size not in (None, picture.size):
+            raise MessageError(
+                "sensor_msgs/msg/CompressedImage.data",
+                f"{picture.width} by {picture.height} pixels; {size[0]} by {size[1]} fit",
+            )
         picture.load()
     except (OSError, SyntaxError, pillow().DecompressionBombError) as error:
         raise MessageError(

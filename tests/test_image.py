@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
+import PIL.PngImagePlugin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -408,6 +409,17 @@ def test_depth_of_eight_bits_is_an_error() -> None:
 
     with pytest.raises(MessageError, match="16 bits"):
         decompress(CompressedImage(format="16UC1; compressedDepth", data=bytes(12) + file.data))
+
+
+def test_a_picture_of_another_size_than_wanted_is_not_decoded(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its file is small, and its pixels would take any amount of memory."""
+    file = compress(from_numpy(np.zeros((400, 500), np.uint8), "mono8"), "png")
+    assert decompress(file, (500, 400)).width == 500
+    monkeypatch.delattr(PIL.PngImagePlugin.PngImageFile, "load_prepare")
+    with pytest.raises(MessageError, match="500 by 400 pixels; 640 by 480 fit"):
+        decompress(file, (640, 480))
 
 
 def test_a_picture_that_is_too_large_to_be_meant_is_an_error(

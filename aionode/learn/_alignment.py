@@ -18,7 +18,15 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from aionode.learn.contract import Action, Contract, Observation
 
-__all__ = ["LONGEST_GAP", "OTHER_CLOCK", "Aligned", "Series", "aligned", "in_order"]
+__all__ = [
+    "LONGEST_GAP",
+    "OTHER_CLOCK",
+    "Aligned",
+    "Series",
+    "aligned",
+    "in_order",
+    "pictures_per_row",
+]
 
 LONGEST_GAP: Final = 1.5
 """The periods from one row to the next up to which they belong to one episode."""
@@ -183,8 +191,8 @@ def references(contract: Contract, times: Ints) -> Ints:
     if len(times) < 2:
         return times
     step = float(np.median(np.diff(times)))
-    every = round(1e9 / contract.fps / step) if step > 0 else 1
-    if every < 2:
+    every = pictures_per_row(1e9 / step, contract.fps) if step > 0 else 1
+    if every == 1:
         return times
     least = (every - 0.5) * step
     kept = [int(times[0])]
@@ -192,6 +200,11 @@ def references(contract: Contract, times: Ints) -> Ints:
         if time - kept[-1] >= least:
             kept.append(time)
     return np.array(kept, np.int64)
+
+
+def pictures_per_row(rate_hz: float, fps: int) -> int:
+    """Return how many pictures of a camera there are for each row."""
+    return max(round(rate_hz / fps), 1)
 
 
 def sampled(

@@ -236,7 +236,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.image is None:
             return super().value(message)
         if self.type == IMAGES[1]:
-            message = pictures.decompress(message)
+            message = pictures.decompress(message, (self.width, self.height))
         pixels = pixels_of(message, self.image)
         if pixels.shape != self.shape:
             raise MessageError(

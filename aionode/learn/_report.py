@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from aionode.errors import escaped
-from aionode.learn._alignment import OTHER_CLOCK
+from aionode.learn._alignment import OTHER_CLOCK, pictures_per_row
 from aionode.learn._metadata import OUTCOME_KEY
 from aionode.learn._scan import full_name
 
@@ -269,7 +269,7 @@ def trouble_of(
         found.append(f"{name}: times that go back; do two nodes publish it?")
     found += stamp_problems(topic)
     if topic["is_main"]:
-        every = max(round(topic["rate_hz"] / contract.fps), 1)
+        every = pictures_per_row(topic["rate_hz"], contract.fps)
         if topic["rate_hz"] and abs(topic["rate_hz"] / every / contract.fps - 1) > Limits().rate:
             found.append(
                 f"{name}: {topic['rate_hz']:.1f} Hz, and fps is {contract.fps}; set the camera's "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from aionode import image
@@ -206,6 +207,30 @@ def test_false_messages_are_left_out_and_told(tmp_path: Path, name: str) -> None
     assert case.told in found.text
     assert found.problems
     assert 20 <= found.rows < 30
+
+
+def test_compressed_pictures_that_are_false_are_left_out(tmp_path: Path) -> None:
+    """They are decoded when rows are there already: these are made again."""
+    observations = contract().to_dict()["observations"]
+    observations[0]["type"] = "sensor_msgs/msg/CompressedImage"
+    bomb = image.compress(image.from_numpy(np.zeros((4000, 5000), np.uint8), "mono8"), "png").data
+
+    def edit(messages: Messages) -> Messages:
+        pictures = [message for _, topic, message in messages if topic == "/camera0"]
+        for picture, data in zip(
+            pictures[10::5], (b"", bomb, b"\xff\xd8\xff", b"%!PS"), strict=True
+        ):
+            picture.data = data
+        return messages
+
+    found = exported(
+        tmp_path,
+        edit,
+        contract=contract(observations=observations),
+        wrap=lambda shown: image.compress(shown, "png"),
+    )
+    assert "/camera0: 4 messages not as in the contract: sensor_msgs/msg/Compr" in found.text
+    assert found.rows == 24
 
 
 def test_a_bag_that_was_recorded_in_a_loop_is_read_once(tmp_path: Path) -> None:

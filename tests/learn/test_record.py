@@ -20,11 +20,13 @@ from aionode.action import GoalStatus
 from aionode.clock import Time
 from aionode.engine.context import Context
 from aionode.errors import BagError, BagWriteError, DatasetError, EpisodeError
+from aionode.gateway import Gateway, Policy
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.learn import Contract, Episodes, RecordEpisode, check, export
 from aionode.node import Node
 from aionode.testing import ManualClock, local_context, settle
+from tests.support.chromium import CHROMIUM, chromium
 from tests.support.demonstrations import START_NS, angle, contract, picture, stamp
 
 
@@ -148,6 +150,38 @@ async def test_services_begin_and_end_episodes(tmp_path: Path) -> None:
         assert answer.message == f"{tmp_path / 'episode_0000'}: failure"
         assert episodes.current is None
     assert metadata(tmp_path / "episode_0000")["outcome"] == "failure"
+
+
+PAGE = Policy.parse("""
+    [[who]]
+    name = "operator"
+    loopback = true
+    [[allow]]
+    call = "/episodes/*"
+""")
+
+
+@pytest.mark.one_loop
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+async def test_the_page_of_the_gateway_begins_and_ends_episodes(tmp_path: Path) -> None:
+    """In its Services panel, from a telephone beside the robot."""
+    async with (
+        recording(tmp_path) as (robot, episodes),
+        Gateway(robot.node, policy=PAGE, port=0) as gateway,
+        chromium() as browser,
+    ):
+        page = await browser.open(f"http://127.0.0.1:{gateway.port}/")
+        for name, told in (("start", "recording"), ("end", "success"), ("end", "start one")):
+            await page.choose("#services select", f"/episodes/{name}")
+            await page.until(
+                "document.querySelector('#services .type').textContent.includes('Trigger')"
+            )
+            await page.click("#services .call")
+            await page.until(
+                f"document.querySelector('#services pre').textContent.includes('{told}')"
+            )
+        assert episodes.current is None
+    assert metadata(tmp_path / "episode_0000")["outcome"] == "success"
 
 
 async def test_a_goal_records_an_episode_until_it_is_ended(tmp_path: Path) -> None:
