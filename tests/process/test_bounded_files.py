@@ -1,4 +1,4 @@
-"""Files of others that are not what their names say."""
+"""Tests of files whose contents are not what their names suggest."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 @pytest.mark.parametrize("name", READERS)
 def test_the_pointer_of_git_lfs_is_called_one(name: str, tmp_path: Path) -> None:
-    """A clone without LFS has it in place of the file, and an error of syntax would mislead."""
+    """A clone without LFS has it in place of the file, and a syntax error would mislead."""
     file = tmp_path / "robot" / name
     file.parent.mkdir(parents=True)
     file.write_text(POINTER)

@@ -1,4 +1,4 @@
-"""YAML of others: within limits, and with one kind of error, by every way in."""
+"""Tests that untrusted YAML is limited, and raises one kind of error, wherever it is read."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_what_is_not_read_is_one_kind_of_error(read: object, text: str) -> None:
 
 
 def test_keys_that_are_merged_count_as_often_as_they_are_merged() -> None:
-    """PyYAML copies them each time, which takes gigabytes."""
+    """PyYAML copies them each time, which could take gigabytes."""
     text = "b: &b0 {k: v, l: w}\n"
     for at in range(1, 12):
         text += f"c{at}: &b{at} {{<<: [{', '.join([f'*b{at - 1}'] * 9)}]}}\n"
@@ -56,7 +56,7 @@ def test_keys_that_are_merged_count_as_often_as_they_are_merged() -> None:
 
 
 def test_the_variable_raises_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The metadata of a bag of ten thousand files are long, and no bomb."""
+    """The metadata of a bag with ten thousand files are long, but no attack."""
     monkeypatch.setenv(VALUES_VARIABLE, "100000")
     assert len(loaded_yaml("[" + "x," * 90_000 + "]")) == 90_000
 
@@ -71,7 +71,7 @@ def test_a_launch_file_has_the_same_limits(tmp_path: Path) -> None:
 
 
 def test_elements_of_a_launch_file_are_not_nested_without_end(tmp_path: Path) -> None:
-    """Python's stack would end first."""
+    """Python's stack would overflow first."""
     file = tmp_path / "x.launch.xml"
     file.write_text("<launch>" + "<group>" * 5000 + "</group>" * 5000 + "</launch>")
     with pytest.raises(LaunchFileError, match="nested deeper"):
@@ -79,7 +79,7 @@ def test_elements_of_a_launch_file_are_not_nested_without_end(tmp_path: Path) ->
 
 
 def test_a_text_that_is_beyond_the_limits_is_a_text() -> None:
-    """As one that is no YAML, where a parameter or an argument is read."""
+    """It is treated like text that is not YAML, where a parameter or an argument is read."""
     assert coerce_to_type(BOMB) == BOMB
     assert get_parameter_value(BOMB).string_value == BOMB
 
@@ -93,20 +93,20 @@ def test_a_message_on_the_command_line_has_the_same_limits() -> None:
 
 
 def test_a_parameter_file_has_as_many_values_at_most() -> None:
-    """Rcl's own rules allow no aliases, but any number of values."""
+    """The rules of rcl allow no aliases, but any number of values."""
     with pytest.raises(ParameterFileError, match=VALUES_VARIABLE):
         list_of_rules("/**: {ros__parameters: {a: [" + "1," * 90_000 + "1]}}")
 
 
 def list_of_rules(text: str) -> None:
-    """Read parameters as of a file."""
+    """Read parameters as a file is read."""
     from aionode.arguments._parameter_yaml import parse_parameter_yaml
 
     parse_parameter_yaml(text)
 
 
 def test_pipes_in_place_of_files_are_refused(tmp_path: Path) -> None:
-    """Each would wait for a writer for ever."""
+    """Each would wait forever for a writer."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     with pytest.raises(ParameterFileError, match="pipe"):
@@ -118,7 +118,7 @@ def test_pipes_in_place_of_files_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_pipe_that_a_shell_hands_over_is_read() -> None:
-    """``--params-file <(generate)`` is one."""
+    """``--params-file <(generate)`` passes one."""
     reading, writing = os.pipe()
     os.write(writing, b"/**: {ros__parameters: {a: 1}}")
     os.close(writing)

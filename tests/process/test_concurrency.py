@@ -1,4 +1,4 @@
-"""Waiting until nothing is left to run: `settle`, and what it needs to know."""
+"""Tests of waiting until nothing is left to run: `settle`, and what it relies on."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ LOOPS = {"asyncio": asyncio.new_event_loop, "uvloop": uvloop.new_event_loop}
 
 @pytest.fixture(params=LOOPS)
 def runner(request: pytest.FixtureRequest) -> asyncio.Runner:
-    """Each kind of event loop keeps its queue in a different place."""
+    """Return a runner for each kind of event loop, since each keeps its queue elsewhere."""
     return asyncio.Runner(loop_factory=LOOPS[request.param])
 
 
 async def turns(count: int, done: list[int]) -> None:
-    """Take some turns of the loop."""
+    """Run some iterations of the loop."""
     for _ in range(count):
         await checkpoint()
     done.append(count)
 
 
 def test_tasks_run_until_they_wait(runner: asyncio.Runner) -> None:
-    """Including a task that stays ready for many turns."""
+    """This includes a task that stays ready for many iterations."""
 
     async def main() -> None:
         done: list[int] = []
@@ -66,7 +66,7 @@ def test_chains_of_plain_callbacks_run_to_their_end(runner: asyncio.Runner) -> N
 
 
 def test_several_may_settle_at_once(runner: asyncio.Runner) -> None:
-    """They do not mistake each other for work that is left."""
+    """They do not mistake each other for remaining work."""
 
     async def main() -> None:
         done: list[int] = []
@@ -82,7 +82,7 @@ def test_several_may_settle_at_once(runner: asyncio.Runner) -> None:
 
 
 def test_work_in_threads_is_waited_for(runner: asyncio.Runner) -> None:
-    """And so are the tasks that its result makes ready."""
+    """So are the tasks that its result makes ready."""
 
     async def main() -> None:
         done: list[int] = []
@@ -145,7 +145,7 @@ def test_time_can_be_stepped_on_every_loop(runner: asyncio.Runner) -> None:
 async def test_a_loop_whose_queue_is_inaccessible_is_watched_through_its_tasks(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """An event loop of another library may keep its queue out of reach."""
+    """Another library's event loop may hide its queue."""
     monkeypatch.setattr(module, "ready_queue", lambda _: None)
     done: list[int] = []
     async with asyncio.TaskGroup() as tasks:

@@ -1,4 +1,4 @@
-"""Tests of imports without the collection of garbage."""
+"""Tests of imports without garbage collection."""
 
 import gc
 import os
@@ -27,21 +27,21 @@ print([
 
 
 def test_no_garbage_is_collected_within_the_block_but_after_it() -> None:
-    """A program whose collector stays off would grow."""
+    """If the collector stayed off, the program's memory would grow."""
     with uncollected():
         assert not gc.isenabled()
     assert gc.isenabled()
 
 
 def test_the_collector_is_on_again_after_an_import_that_fails() -> None:
-    """A library that is not installed must not cost the program its collector."""
+    """A missing library must not leave the program without its collector."""
     with pytest.raises(ImportError), uncollected():
         raise ImportError
     assert gc.isenabled()
 
 
 def test_a_collector_that_the_program_switched_off_stays_off() -> None:
-    """The settings of the program are its own, as with `freeze_objects`."""
+    """The program owns this setting, as with `freeze_objects`."""
     gc.disable()
     try:
         with uncollected():

@@ -1,4 +1,4 @@
-"""Calls that wait for their time."""
+"""Tests of scheduled calls."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from aionode._process.later import Later
 
 
 async def test_one_call_waits_at_a_time() -> None:
-    """What is asked for next takes the place of what waits, and may be asked for by the call."""
+    """The next request replaces the waiting one, and may be made by the call itself."""
     later, calls, called = Later(), [], asyncio.Event()
 
     def second() -> None:
@@ -26,7 +26,7 @@ async def test_one_call_waits_at_a_time() -> None:
 
 
 async def test_what_is_cancelled_is_not_called() -> None:
-    """Who closes leaves nothing behind that acts."""
+    """Closing something leaves no call behind."""
     later, called = Later(), asyncio.Event()
     later.call(0.0, called.set)
     later.cancel()

@@ -1,4 +1,4 @@
-"""An event loop that other threads may use while its own sleeps."""
+"""Tests of an event loop that other threads may use while its own thread sleeps."""
 
 from __future__ import annotations
 
@@ -76,12 +76,12 @@ def test_the_loop_does_what_its_borrower_has_scheduled(
 
 
 async def do(work: Callable[[], None]) -> None:
-    """Do it in a task."""
+    """Run it in a task."""
     work()
 
 
 def test_a_loop_that_is_borrowed_does_nothing() -> None:
-    """What belongs to the thread of the loop is the borrower's alone."""
+    """Only the borrower may use what belongs to the loop's thread."""
     done = threading.Event()
     with running_loop() as loop:
         borrow(loop)
@@ -93,7 +93,7 @@ def test_a_loop_that_is_borrowed_does_nothing() -> None:
 
 
 def test_a_loop_that_works_is_not_lent() -> None:
-    """The borrower does not wait for it either: it hands its work over in another way."""
+    """The borrower does not wait for it either, but hands its work over in another way."""
     working, go_on = threading.Event(), threading.Event()
     with running_loop() as loop:
 
@@ -109,7 +109,7 @@ def test_a_loop_that_works_is_not_lent() -> None:
 
 
 def test_a_loop_has_one_borrower() -> None:
-    """Two threads that send at the same time do not meet in it."""
+    """Two threads that send at the same time cannot use it together."""
     with running_loop() as loop:
         borrow(loop)
 
@@ -118,7 +118,7 @@ def test_a_loop_has_one_borrower() -> None:
 
 
 def test_the_borrowed_loop_is_the_running_one() -> None:
-    """Code of the loop asks for it, also where the borrower's thread runs another one."""
+    """The loop's code asks for it, even if the borrower's thread runs another loop."""
     with running_loop() as loop:
 
         async def main() -> None:
@@ -133,13 +133,13 @@ def test_the_borrowed_loop_is_the_running_one() -> None:
 
 
 def test_a_loop_in_debug_mode_is_not_lent() -> None:
-    """It checks then that only the loop's own thread uses it."""
+    """In debug mode it checks that only its own thread uses it."""
     with running_loop(debug=True) as loop:
         assert not any(loop.borrow() for _ in range(10_000))
 
 
 def test_giving_back_a_loop_that_was_closed_meanwhile_has_no_effect() -> None:
-    """A thread may still send while its context is shut down."""
+    """A thread may still be sending while its context is shut down."""
     loop = LendableLoop()
     thread = threading.Thread(target=loop.run_forever)
     thread.start()
@@ -158,7 +158,7 @@ def test_giving_back_a_loop_that_was_closed_meanwhile_has_no_effect() -> None:
 
 @pytest.fixture
 def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
-    """Return two sockets that are connected."""
+    """Return two connected sockets."""
     here, there = socket.socketpair()
     with here, there:
         yield here, there
@@ -172,7 +172,7 @@ def readers_of(loop: LendableLoop) -> Readers:
 
 
 def watch(loop: LendableLoop, sock: socket.socket) -> queue.Queue[int]:
-    """Read a socket in a loop; each time the queue gets the thread that does it."""
+    """Read a socket in a loop; put the thread that does it into the queue each time."""
     read: queue.Queue[int] = queue.Queue()
 
     def take() -> None:
@@ -188,7 +188,7 @@ def watch(loop: LendableLoop, sock: socket.socket) -> queue.Queue[int]:
 def test_the_thread_that_waits_in_place_of_the_loop_reads(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """And the loop does so before and afterwards."""
+    """The loop itself reads before and afterwards."""
     here, there = pair
     with running_loop() as loop:
         readers, read = readers_of(loop), watch(loop, here)
@@ -207,7 +207,7 @@ def test_the_thread_that_waits_in_place_of_the_loop_reads(
 
 
 def test_one_thread_waits_in_place_of_the_loop() -> None:
-    """Another one waits in its own way."""
+    """A second thread waits in its own way."""
     with running_loop() as loop:
         readers = readers_of(loop)
 
@@ -220,7 +220,7 @@ def test_one_thread_waits_in_place_of_the_loop() -> None:
 
 @pytest.mark.parametrize("way", ["rouse", "close"])
 def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
-    """Another thread has something for the one that waits, or the loop has ended."""
+    """Another thread has something for the waiting one, or the loop has ended."""
     with running_loop() as loop:
         readers = readers_of(loop)
         waits, ended = threading.Event(), threading.Event()
@@ -250,7 +250,7 @@ def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
 
 
 def test_rousing_after_the_loop_is_closed_touches_no_other_file() -> None:
-    """The number of its descriptor is another file's by then: the user's."""
+    """By then, its descriptor's number may belong to a file of the user."""
     with running_loop() as loop:
         readers = readers_of(loop)
         number = readers._event
@@ -295,7 +295,7 @@ def test_a_wait_of_months_is_possible() -> None:
 def test_a_reader_that_was_removed_is_not_called(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """Whoever waits."""
+    """This holds whoever waits."""
     here, there = pair
     with running_loop() as loop:
         readers, read = readers_of(loop), watch(loop, here)
@@ -314,7 +314,7 @@ def test_a_reader_that_was_removed_is_not_called(
 def test_an_exception_of_a_reader_goes_to_the_handler_of_the_loop(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
-    """As in any loop: the thread that happens to wait has nothing to do with it."""
+    """As in any loop: the thread that happens to wait is not responsible for it."""
     here, there = pair
     handled: list[object] = []
     with running_loop() as loop:
@@ -365,7 +365,7 @@ class Hold:
             self.readers.end()
 
     def interrupt(self, *_: object) -> None:
-        """Do what a handler of a signal or a finalizer may do."""
+        """Do what a signal handler or a finalizer may do."""
         self.answers.append(self.loop.borrow())
         if self.way == "begin":
             self.answers.append(self.readers.begin())
@@ -407,7 +407,7 @@ def test_a_handler_of_a_signal_may_hand_work_to_a_loop_that_is_held(
 def test_an_exception_out_of_a_handler_leaves_the_loop_to_who_lets_it_go(
     handler: SetHandler, way: str
 ) -> None:
-    """The work stays half done; with a ``finally`` the loop goes on, and can be borrowed again."""
+    """The work is left half done; with a ``finally`` the loop continues, and can be borrowed."""
 
     def fail(*_: object) -> None:
         raise LookupError
@@ -434,7 +434,7 @@ def test_an_exception_out_of_a_handler_leaves_the_loop_to_who_lets_it_go(
 def test_an_exception_before_the_loop_is_given_back_keeps_it_for_ever(
     handler: SetHandler,
 ) -> None:
-    """So the main thread borrows only where no handler may raise: here nothing lets go."""
+    """So the main thread borrows only where no handler may raise; here nothing releases it."""
 
     def fail(*_: object) -> None:
         raise LookupError
@@ -455,7 +455,7 @@ def test_an_exception_before_the_loop_is_given_back_keeps_it_for_ever(
 
 @WAYS
 def test_a_finalizer_may_hand_work_to_a_loop_that_is_held(way: str) -> None:
-    """The garbage collector calls it in any thread, and what it raises goes no further."""
+    """The collector calls it in any thread, and its exceptions do not propagate."""
 
     class Garbage:
         def __init__(self, on_end: Callable[[], None]) -> None:
@@ -479,7 +479,7 @@ def test_a_finalizer_may_hand_work_to_a_loop_that_is_held(way: str) -> None:
 
 
 class Work:
-    """What a loop and its borrowers do; notes when two threads do something at the same time."""
+    """Represents the work of a loop and its borrowers; notes when two threads work at once."""
 
     def __init__(self) -> None:
         self.done: Counter[str] = Counter()
@@ -497,11 +497,11 @@ class Work:
         self._one.release()
 
     def read(self, sock: socket.socket) -> None:
-        """Count what a socket has brought."""
+        """Count what a socket has received."""
         self.do("read", len(sock.recv(64)))
 
     def counts(self, names: Iterable[str]) -> dict[str, int]:
-        """Return how often these things were done so far."""
+        """Return how often each thing was done so far."""
         return {name: self.done[name] for name in names}
 
     def tick(self, loop: LendableLoop) -> None:
@@ -513,7 +513,7 @@ class Work:
         loop.call_later(0.001, self.tick, loop)
 
     def borrow(self, loop: LendableLoop, times: int) -> None:
-        """Borrow the loop so often, and give it something to do each time."""
+        """Borrow the loop repeatedly, and give it something to do each time."""
         for _ in range(times):
             borrow(loop)
             self.do("borrowed")
@@ -522,14 +522,14 @@ class Work:
             loop.give_back()
 
     def post(self, loop: LendableLoop, times: int) -> None:
-        """Hand so many things over, and wake whoever waits in place of the loop."""
+        """Hand over many items, and wake whoever waits in place of the loop."""
         for number in range(times):
             loop.call_soon_threadsafe(self.do, "posted")
             if loop.readers is not None and number % 8 == 0:
                 loop.readers.rouse()
 
     def wait(self, loop: LendableLoop, over: threading.Event) -> None:
-        """Wait in place of the loop, again and again."""
+        """Wait in place of the loop repeatedly."""
         while loop.readers is not None and not over.is_set():
             if loop.readers.begin():
                 for _ in range(16):
@@ -539,14 +539,14 @@ class Work:
 
 
 def send(sock: socket.socket, times: int) -> None:
-    """Send so many bytes, one at a time."""
+    """Send bytes, one at a time."""
     for _ in range(times):
         sock.send(b"x")
 
 
 @pytest.fixture
 def quick_switches() -> Iterator[None]:
-    """Have Python change between threads as often as it can."""
+    """Make Python switch between threads as often as possible."""
     usual_s = sys.getswitchinterval()
     sys.setswitchinterval(1e-6)
     yield

@@ -1,4 +1,4 @@
-"""What is logged of something that others cause."""
+"""Tests of log lines about events that others cause."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STEPS = st.lists(st.tuples(st.integers(0, 2 * MOST_WAIT_NS), st.integers(1, 5)),
 
 
 def number_in(text: str) -> int:
-    """Return how many a line tells of, with itself."""
+    """Return how many events a line reports, including its own."""
     if not text:
         return 1
     number = int(text.removeprefix(" (").split()[0])
@@ -22,7 +22,7 @@ def number_in(text: str) -> int:
 
 @given(STEPS)
 def test_what_was_counted_is_said_with_the_next_line(steps: list[tuple[int, int]]) -> None:
-    """Nothing is lost between the lines, and they are as far apart as is promised."""
+    """Nothing is lost between the lines, which keep the promised distance."""
     now_ns, noted, said = 0, 0, 0
     times: list[int] = []
     lines: RatedLines[str] = RatedLines(lambda: now_ns)
@@ -38,7 +38,7 @@ def test_what_was_counted_is_said_with_the_next_line(steps: list[tuple[int, int]
 
 
 def test_a_flood_is_said_less_and_less_often() -> None:
-    """Twelve lines an hour are read; a thousand are not."""
+    """People read twelve lines an hour, but not a thousand."""
     now_ns = 0
     lines: RatedLines[str] = RatedLines(lambda: now_ns)
     said: list[int] = []
@@ -51,7 +51,7 @@ def test_a_flood_is_said_less_and_less_often() -> None:
 
 
 def test_what_is_left_out_for_lack_of_room_is_not_remembered() -> None:
-    """A flood of invented subjects displaces none that was said."""
+    """A flood of invented subjects displaces none that was logged."""
     lines: RatedLines[int] = RatedLines(lambda: 0, most=1)
     assert lines.note(0) == ""
     for subject in range(1, 10):

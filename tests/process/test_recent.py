@@ -1,4 +1,4 @@
-"""Dicts that forget what came first."""
+"""Tests of dicts that forget their oldest keys."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from aionode._process.recent import Recent
 
 @given(st.lists(st.integers(0, 9)), st.integers(1, 5))
 def test_the_last_keys_that_were_new_are_kept(keys: list[int], most: int) -> None:
-    """Invented names cannot fill the memory, and a name that is known pushes none out."""
+    """Invented names cannot fill the memory, and a known name displaces none."""
     recent: Recent[int, int] = Recent(most)
     kept: list[int] = []
     for number, key in enumerate(keys):

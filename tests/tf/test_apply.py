@@ -39,7 +39,7 @@ MOVED = pytest.approx((8, 1, 3))
 
 
 def test_vectors_are_turned_and_points_are_moved_as_well() -> None:
-    """A velocity has no place."""
+    """A velocity has a direction, but no position."""
     assert xyz(do_transform(geometry.PointStamped(header=HEADER, point=POINT), QUARTER).point) == (
         MOVED
     )
@@ -93,7 +93,7 @@ def test_covariances_turn_with_their_axes() -> None:
 
 
 def test_polygons_and_inertia() -> None:
-    """Points of 32 bits; the tensor stays that about the center of mass."""
+    """Points are stored in 32 bits; the tensor stays relative to the center of mass."""
     polygon = geometry.Polygon(points=[geometry.Point32(x=1.0, y=2.0, z=3.0)])
     found = do_transform(geometry.PolygonStamped(polygon=polygon), QUARTER).polygon
     assert xyz(found.points[0]) == MOVED
@@ -110,7 +110,7 @@ def test_polygons_and_inertia() -> None:
 
 
 def test_the_points_of_a_cloud_move_and_other_fields_stay() -> None:
-    """The header has the new frame and, as in tf2, the stamp of the cloud."""
+    """The header gets the new frame but, as in tf2, keeps the cloud's stamp."""
     cloud = create_cloud_xyz32(Header(frame_id="base"), [(1, 2, 3), (0, 0, 0)])
     found = do_transform(cloud, QUARTER)
     np.testing.assert_allclose(read_points_numpy(found), [(8, 1, 3), (10, 0, 0)], rtol=0, atol=1e-6)
@@ -125,7 +125,7 @@ async def test_a_buffer_transforms_what_is_known_or_registered(node: Node) -> No
     """It waits for the transform first."""
 
     class Marker(Message, typename="my_msgs/msg/Marker"):
-        """A type of the user: a class for each run, as the process keeps what is registered."""
+        """A user's type: a new class for each run, since the process keeps what is registered."""
 
         header: Header = DEFAULT
         x: float64 = 0.0

@@ -1,4 +1,4 @@
-"""Transforms that are awaited, in nodes."""
+"""Tests of awaited transforms in nodes."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def at(seconds: float) -> Time:
 
 @pytest.fixture
 def buffer(node: Node) -> Buffer:
-    """A buffer whose transforms the test sets itself."""
+    """Return a buffer whose transforms the test sets directly."""
     return Buffer(node)
 
 
@@ -64,7 +64,7 @@ def put(buffer: BufferCore, *transforms: TransformStamped) -> None:
 
 @pytest.fixture
 def logged() -> Iterator[list[str]]:
-    """What nodes log."""
+    """Return what nodes log."""
     texts: list[str] = []
     remove = get_logger("node").add_sink(lambda event: texts.append(event.msg))
     yield texts
@@ -72,7 +72,7 @@ def logged() -> Iterator[list[str]]:
 
 
 async def waiting(work: Any) -> asyncio.Task[Any]:
-    """Return a task that has begun to wait."""
+    """Return a task that has started to wait."""
     task = asyncio.get_running_loop().create_task(work)
     await settle()
     assert not task.done()
@@ -91,7 +91,7 @@ async def test_a_transform_that_is_there_needs_no_wait(buffer: Buffer) -> None:
 
 
 async def test_a_wait_ends_when_the_last_piece_arrives(buffer: Buffer) -> None:
-    """Neither frame exists at first, and other frames do not disturb."""
+    """Neither frame exists at first, and other frames do not matter."""
     task = await waiting(buffer.wait_for_transform("map", "camera", at(1.5)))
     put(buffer, transform("base", "camera", 1.0), transform("base", "camera", 2.0))
     put(buffer, transform("map", "odom", 1.5), transform("other", "x", 1.5))
@@ -103,7 +103,7 @@ async def test_a_wait_ends_when_the_last_piece_arrives(buffer: Buffer) -> None:
 
 
 async def test_the_answer_is_that_of_the_moment(buffer: Buffer) -> None:
-    """Until the task runs, the data may have gone."""
+    """By the time the task runs, the data may be gone."""
     task = await waiting(buffer.wait_for_transform("map", "base", at(1)))
     put(buffer, transform("map", "base", 1.0), transform("map", "base", 100.0))
     put(buffer, transform("map", "base", 101.0))
@@ -113,7 +113,7 @@ async def test_the_answer_is_that_of_the_moment(buffer: Buffer) -> None:
 async def test_data_of_other_times_and_frames_wakes_nobody(
     buffer: Buffer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A hundred waiters cost nothing while a thousand transforms pass."""
+    """A hundred waiters cost nothing while a thousand transforms arrive."""
     put(buffer, *(transform("map", f"f{n}", 1.0) for n in range(50)))
     tasks = [
         await waiting(buffer.wait_for_transform("map", f"f{n % 50}", at(10 + n)))
@@ -168,7 +168,7 @@ async def test_a_limit_of_asyncio_shows_the_reason_as_its_cause(buffer: Buffer) 
 
 
 async def test_a_wait_for_what_has_gone_fails_at_once(buffer: Buffer) -> None:
-    """A time that is older than all that is kept never comes."""
+    """A time older than all kept data can never become available."""
     put(buffer, transform("map", "base", 100.0), transform("map", "base", 101.0))
     with pytest.raises(ExtrapolationException, match="into the past"):
         await buffer.wait_for_transform("map", "base", at(1))
@@ -179,7 +179,7 @@ async def test_a_wait_for_what_has_gone_fails_at_once(buffer: Buffer) -> None:
 
 
 async def test_names_that_no_frame_can_have_are_refused(buffer: Buffer) -> None:
-    """Nobody waits for them."""
+    """Waiting for them would be pointless."""
     for names in (("", "a"), ("/a", "b")):
         with pytest.raises(InvalidArgumentException):
             await buffer.wait_for_transform(*names)
@@ -188,7 +188,7 @@ async def test_names_that_no_frame_can_have_are_refused(buffer: Buffer) -> None:
 
 
 async def test_two_times_are_awaited_as_well(buffer: Buffer) -> None:
-    """First one of the two is missing, then the other."""
+    """First one of the two is missing, then the other one."""
     put(buffer, *(transform("map", "robot", t, (t, 0.0, 0.0)) for t in (1.0, 2.0)))
     wait = buffer.wait_for_transform_full("robot", at(3), "robot", at(1.5), "map")
     task = await waiting(wait)
@@ -200,7 +200,7 @@ async def test_two_times_are_awaited_as_well(buffer: Buffer) -> None:
 
 
 async def test_the_end_of_the_node_ends_the_waits(node_factory: Callable[..., Node]) -> None:
-    """Tasks of others get an error, loops end."""
+    """Other tasks get an error, and loops end."""
     node = node_factory("node")
     async with node:
         buffer = Buffer(node)
@@ -220,7 +220,7 @@ async def test_the_end_of_the_node_ends_the_waits(node_factory: Callable[..., No
 async def test_a_callback_that_waits_does_not_stop_the_transforms(
     node_factory: Callable[..., Node],
 ) -> None:
-    """In tf2, a callback that waits with a time limit blocks the executor that would feed it."""
+    """In tf2, a callback that waits blocks the executor that would deliver the transforms."""
     async with node_factory("sender") as sender, node_factory("node") as node:
         buffer = Buffer(node)
         found: asyncio.Future[TransformStamped] = asyncio.get_running_loop().create_future()
@@ -241,7 +241,7 @@ async def test_a_callback_that_waits_does_not_stop_the_transforms(
 async def test_waits_in_callbacks_of_a_timer_and_of_one_topic_do_not_block_each_other(
     node_factory: Callable[..., Node],
 ) -> None:
-    """In tf2, two waits in one callback group wait for each other."""
+    """In tf2, two waits in one callback group block each other."""
     async with node_factory("node") as node:
         buffer = Buffer(node)
         done: list[str] = []
@@ -268,7 +268,7 @@ async def test_waits_in_callbacks_of_a_timer_and_of_one_topic_do_not_block_each_
 
 
 async def test_a_wait_without_an_end_can_be_given_up(buffer: Buffer) -> None:
-    """In tf2, `lookup_transform_async` has no limit, and its future stays in the buffer."""
+    """In tf2, `lookup_transform_async` has no timeout, and its future stays in the buffer."""
     waiters = living(Waiter)
     futures = living(asyncio.Future)
     for _ in range(100):
@@ -282,7 +282,7 @@ async def test_a_wait_without_an_end_can_be_given_up(buffer: Buffer) -> None:
 
 
 async def test_following_yields_each_change_of_the_chain(buffer: Buffer) -> None:
-    """Not those of other frames, and only the newest for a slow loop."""
+    """Other frames are ignored, and a slow loop gets only the newest change."""
     futures = living(asyncio.Future)
     changes = buffer.follow("map", "camera")
     task = await waiting(anext(changes))
@@ -308,7 +308,7 @@ def stamped_point(frame: str, seconds: float) -> PointStamped:
 async def test_a_filter_holds_messages_until_their_transform_is_there(
     node: Node, buffer: Buffer
 ) -> None:
-    """Each comes with its transform, as soon as it can."""
+    """Each message comes with its transform, as soon as that is available."""
     subscription = node.create_subscription(PointStamped, "point", None, 10)
     points = node.create_publisher(PointStamped, "point", 10)
     filtered = buffer.filter(subscription, "map")
@@ -331,7 +331,7 @@ async def test_a_filter_holds_messages_until_their_transform_is_there(
 async def test_a_filter_counts_what_it_drops_with_the_reason(
     node: Node, buffer: Buffer, logged: list[str]
 ) -> None:
-    """Its memory is bounded, and the log has one line for each reason."""
+    """Its memory is bounded, and each reason is logged once."""
     subscription = node.create_subscription(PointStamped, "point", None, 100)
     points = node.create_publisher(PointStamped, "point", 100)
     filtered = buffer.filter(subscription, "map", queue_size=2)
@@ -371,7 +371,7 @@ async def test_a_filter_that_is_left_behind_leaves_no_waiters(node: Node, buffer
 
 
 async def test_a_filter_that_is_always_ready_lets_others_run(node: Node, buffer: Buffer) -> None:
-    """A loop over ready messages is no reason for timers to stand still."""
+    """A loop over available messages must not stop timers."""
     subscription = node.create_subscription(PointStamped, "point", None, 5000)
     points = node.create_publisher(PointStamped, "point", 10)
     put(buffer, transform("map", "base", 1.0))
@@ -397,7 +397,7 @@ async def test_a_filter_that_is_always_ready_lets_others_run(node: Node, buffer:
 async def test_transforms_come_from_tf_and_tf_static(
     node_factory: Callable[..., Node],
 ) -> None:
-    """A late buffer gets the static ones, all of them; the authority is the sender's node."""
+    """A late buffer gets all static transforms; the authority is the sender's node."""
     async with node_factory("sender") as sender:
         static = StaticTransformBroadcaster(sender)
         static.sendTransform(transform("base", "camera"))
@@ -413,7 +413,7 @@ async def test_transforms_come_from_tf_and_tf_static(
 
 @pytest.mark.parametrize("broadcaster", [TransformBroadcaster, StaticTransformBroadcaster])
 async def test_only_transforms_are_sent(broadcaster: Any, node: Node) -> None:
-    """Anything else is refused, and the next transform is sent as before."""
+    """Anything else is refused, and the next transform is still sent."""
     sending = broadcaster(node)
     for other in (5, None, [transform("base", "camera"), 5]):
         with pytest.raises(MessageError, match="needs geometry_msgs/msg/TransformStamped"):
@@ -424,7 +424,7 @@ async def test_only_transforms_are_sent(broadcaster: Any, node: Node) -> None:
 
 
 def from_publisher(gid: bytes) -> MessageInfo:
-    """Return what is known about a message."""
+    """Return the information about a message."""
     return MessageInfo(
         source_timestamp=0,
         received_timestamp=0,
@@ -456,7 +456,7 @@ async def test_the_sender_of_static_transforms_is_named_when_the_graph_learns_of
 async def test_two_publishers_of_one_node_are_one_sender_once_they_are_named(
     node: Node, buffer: Buffer, logged: list[str]
 ) -> None:
-    """`aionode doctor` would warn of two broadcasters, and name one node twice."""
+    """Otherwise `aionode doctor` would warn of two broadcasters, and name one node twice."""
     gids = bytes(range(16)), bytes(range(16, 32))
     camera = message(transform("base", "camera"))
     buffer.listener.static_callback(camera, from_publisher(gids[0]))
@@ -472,7 +472,7 @@ async def test_two_publishers_of_one_node_are_one_sender_once_they_are_named(
 async def test_two_broadcasters_of_one_frame_are_named(
     node_factory: Callable[..., Node], logged: list[str]
 ) -> None:
-    """By the names of their nodes."""
+    """The warning has the names of their nodes."""
     async with (
         node_factory("one") as one,
         node_factory("two") as two,
@@ -493,7 +493,7 @@ async def test_two_broadcasters_of_one_frame_are_named(
 async def test_a_core_can_be_fed_from_topics_of_other_names(
     node_factory: Callable[..., Node],
 ) -> None:
-    """/tf is global; a remap rule moves it into a namespace, as robots of a fleet do."""
+    """/tf is global; robots of a fleet remap it into their namespaces."""
     arguments = ["--ros-args", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static"]
     async with (
         node_factory("node", namespace="robot7", cli_args=arguments) as node,
@@ -516,7 +516,7 @@ async def test_a_core_can_be_fed_from_topics_of_other_names(
 async def test_a_managed_node_has_its_transforms_in_every_state(
     node_factory: Callable[..., Node],
 ) -> None:
-    """Static ones come once: what an inactive node dropped would be missing for ever."""
+    """Static transforms are sent once: one dropped while inactive would be missing forever."""
     async with node_factory("sender") as sender:
         StaticTransformBroadcaster(sender).sendTransform(transform("base", "camera"))
         node = LifecycleNode("managed", context=sender.context)
@@ -530,7 +530,7 @@ async def test_a_managed_node_has_its_transforms_in_every_state(
 async def test_simulated_time_drives_limits_and_a_jump_back_clears(
     node_factory: Callable[..., Node], logged: list[str]
 ) -> None:
-    """As in tf2; static transforms stay."""
+    """This is as in tf2; static transforms are kept."""
     use_sim_time = [Parameter("use_sim_time", value=True)]
     async with (
         node_factory("clock") as driver,
@@ -565,7 +565,7 @@ async def test_simulated_time_drives_limits_and_a_jump_back_clears(
 async def test_a_switch_of_the_time_source_sets_limits_anew(
     node_factory: Callable[..., Node],
 ) -> None:
-    """An alarm belongs to the time that was followed when it was set."""
+    """An alarm belongs to the time source that was in use when it was set."""
     async with node_factory("node") as node:
         buffer = Buffer(node)
         task = await waiting(buffer.wait_for_transform("map", "base", timeout_sec=1000.0))
@@ -584,7 +584,7 @@ async def test_a_switch_of_the_time_source_sets_limits_anew(
 async def test_a_server_answers_for_those_without_a_buffer(
     node_factory: Callable[..., Node],
 ) -> None:
-    """With the errors of tf2, and after a wait."""
+    """It returns tf2's errors, also after a wait."""
     async with node_factory("server") as server, node_factory("client") as asker:
         buffer = Buffer(server)
         BufferServer(buffer, server)
@@ -618,7 +618,7 @@ async def test_a_server_answers_for_those_without_a_buffer(
 
 
 async def test_without_a_server_a_client_says_so(node: Node) -> None:
-    """In the words of tf2."""
+    """The error is worded as in tf2."""
     client = BufferClient(node, "nobody", timeout_padding=Duration(nanoseconds=1))
     with pytest.raises(TimeoutException, match=r"The BufferServer is not ready\."):
         await client.lookup_transform("a", "b")

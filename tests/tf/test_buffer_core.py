@@ -1,4 +1,4 @@
-"""The tree of frames: what tf2's tests of its core say, in C++ and Python."""
+"""Tests of the tree of frames, taken from tf2's tests of its core in C++ and Python."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def core_with(*transforms: TransformStamped, static: bool = False) -> BufferCore
 
 @pytest.fixture
 def logged() -> Iterator[list[str]]:
-    """What is logged about refused transforms."""
+    """Return what is logged about refused transforms."""
     texts: list[str] = []
     remove = get_logger("tf2_buffer").add_sink(lambda event: texts.append(event.msg))
     yield texts
@@ -122,7 +122,7 @@ def logged() -> Iterator[list[str]]:
 def test_wrong_input_is_refused_as_in_tf2_and_logged_once(
     wrong: TransformStamped, text: str, logged: list[str]
 ) -> None:
-    """A sender with a mistake repeats it a hundred times a second."""
+    """A faulty sender repeats its mistake a hundred times a second."""
     core = BufferCore()
     for _ in range(3):
         core.set_transform(wrong, "/arm")
@@ -132,7 +132,7 @@ def test_wrong_input_is_refused_as_in_tf2_and_logged_once(
 
 
 def test_what_is_older_than_the_cache_time_is_refused(logged: list[str]) -> None:
-    """Its sender is named."""
+    """The log names the sender."""
     core = core_with(transform("p", "c", 20.0))
     core.set_transform(transform("p", "c", 9.5), "/late")
     core.set_transform(transform("p", "c", 9.4), "/late")
@@ -150,7 +150,7 @@ def test_what_is_older_than_the_cache_time_is_refused(logged: list[str]) -> None
 def test_a_flood_of_frames_takes_bounded_memory(
     logged: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The frames that were there before go on."""
+    """Existing frames keep working."""
     monkeypatch.setattr("aionode.tf.buffer_core.MAX_FRAMES", 100)
     core = core_with(transform("p", "c", 1.0))
     for number in range(100_000):
@@ -168,7 +168,7 @@ def test_a_flood_of_frames_takes_bounded_memory(
 
 
 def test_two_senders_of_one_frame_are_named(logged: list[str]) -> None:
-    """A node that takes the place of another is no mistake; two in turns are."""
+    """A node that replaces another one is fine; two that alternate are not."""
     core = BufferCore()
     core.set_transform(transform("p", "c", 1.0), "/one")
     core.set_transform(transform("p", "c", 2.0), "/two")
@@ -184,7 +184,7 @@ def test_two_senders_of_one_frame_are_named(logged: list[str]) -> None:
 
 
 def test_a_leading_slash_is_left_out_on_insertion_and_refused_in_questions() -> None:
-    """So are empty names; both have tf2's texts."""
+    """Empty names are refused as well, with tf2's messages."""
     core = core_with(transform("/a", "/b"))
     core.lookup_transform_core("a", "b", at(1))
     for question, text in (
@@ -210,7 +210,7 @@ def test_a_leading_slash_is_left_out_on_insertion_and_refused_in_questions() -> 
 
 
 def test_nothing_is_there_at_first() -> None:
-    """As tf2 says it."""
+    """The errors are worded as in tf2."""
     core = BufferCore()
     with pytest.raises(LookupException) as caught:
         core.lookup_transform_core("a", "b", at(1))
@@ -228,7 +228,7 @@ def test_nothing_is_there_at_first() -> None:
 
 
 def test_a_frame_seen_from_itself_is_where_it_is() -> None:
-    """Even if it does not exist."""
+    """This holds even if the frame does not exist."""
     core = core_with(transform("p", "c", 3.0))
     assert parts(core.lookup_transform_core("x", "x", at(1))) == (0, 0, 0, 0, 0, 0, 1)
     assert core.lookup_transform_core("c", "c", LATEST).header.stamp.sec == 3
@@ -256,7 +256,7 @@ CONFIGURATIONS: dict[str, list[tuple[str, str, tuple[float, float, float]]]] = {
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 @pytest.mark.parametrize("order", [0, 1])
 def test_a_tree_without_rotations_adds_up(name: str, order: int) -> None:
-    """Between any two frames, in whatever order the transforms came."""
+    """This holds between any two frames, in whatever order the transforms came."""
     edges = CONFIGURATIONS[name]
     core = BufferCore()
     places = {"a": (0.0, 0.0, 0.0)}
@@ -277,7 +277,7 @@ def test_a_tree_without_rotations_adds_up(name: str, order: int) -> None:
 
 
 def test_eight_turns_of_45_degrees_come_back() -> None:
-    """tf2's ring: each frame is one step along a regular octagon."""
+    """In tf2's ring, each frame is one step along a regular octagon."""
     frames = "abcdefghi"
     step = transform(
         "", "", 1.0, (math.sqrt(2) / 2 - 1, math.sqrt(2) / 2, 0.0), yaw=math.radians(45)
@@ -301,7 +301,7 @@ def test_eight_turns_of_45_degrees_come_back() -> None:
 
 
 def test_times_outside_of_the_data_are_refused_with_the_texts_of_tf2() -> None:
-    """One value, too early, too late."""
+    """The three cases are a single value, too early and too late."""
     core = core_with(transform("foo", "bar", 2.0))
     way = ", when looking up transform from frame [bar] to frame [foo]"
     core.lookup_transform_core("foo", "bar", at(2))
@@ -352,7 +352,7 @@ def test_times_outside_of_the_data_are_refused_with_the_texts_of_tf2() -> None:
 def test_an_error_of_extrapolation_names_the_time_of_an_edge_of_the_way(
     target: str, source: str
 ) -> None:
-    """Localization lags behind odometry, and its edge above the way is not what a lookup lacks."""
+    """Localization lags behind odometry, but its edge lies above the path and is not needed."""
     core = BufferCore()
     for stamp in (0.5, 1.0):
         core.set_transform(transform("map", "odom", stamp), "me")
@@ -365,7 +365,7 @@ def test_an_error_of_extrapolation_names_the_time_of_an_edge_of_the_way(
 
 
 def check(core: BufferCore, cases: list[tuple[type[TransformException], float, str]]) -> None:
-    """Ask for foo ← bar at several times."""
+    """Look foo ← bar up at several times."""
     for error, seconds, text in cases:
         with pytest.raises(error) as caught:
             core.lookup_transform_core("foo", "bar", at(seconds))
@@ -375,7 +375,7 @@ def check(core: BufferCore, cases: list[tuple[type[TransformException], float, s
 
 
 def test_frames_of_two_trees_are_not_connected() -> None:
-    """tf2's text lacks a space, and programs search for it."""
+    """tf2's message lacks a space, and programs search for it as it is."""
     core = core_with(transform("a", "b"), transform("c", "d"))
     for time in (at(1), LATEST):
         with pytest.raises(ConnectivityException) as caught:
@@ -405,7 +405,7 @@ def test_a_loop_is_reported_and_ends() -> None:
 
 
 def test_no_data_above_the_common_ancestor_is_no_obstacle() -> None:
-    """Only the frames between the two matter."""
+    """Only the frames between the two are needed."""
     core = BufferCore()
     for stamp in (1.0, 10.0):
         core.set_transform(transform("parent", "a", stamp), "me")
@@ -420,14 +420,14 @@ def test_no_data_above_the_common_ancestor_is_no_obstacle() -> None:
 
 
 def test_repeated_stamps_make_no_invalid_numbers() -> None:
-    """Two poses of one time: one of them holds."""
+    """Of two poses with the same time, one is used."""
     core = core_with(transform("a", "b", 4.0, yaw=0.0), transform("a", "b", 4.0, yaw=1.0))
     for time in (at(4), LATEST):
         assert not any(map(math.isnan, parts(core.lookup_transform_core("a", "b", time))))
 
 
 def test_a_frame_may_change_its_parent() -> None:
-    """Each time has the parent of that time, also after lookups before the change."""
+    """Each time has its own parent, even after lookups before the change."""
     core = core_with(*(transform("old", "c", t, (1.0, 0.0, 0.0)) for t in (1.0, 2.0)))
     assert parts(core.lookup_transform_core("old", "c", at(1.5)))[0] == 1.0
     for t in (3.0, 4.0):
@@ -442,7 +442,7 @@ def test_a_frame_may_change_its_parent() -> None:
 
 
 def test_of_two_ways_the_one_from_the_source_upwards_is_taken() -> None:
-    """A frame that was below another, and is now above it, leads there in both directions."""
+    """A frame that has moved from below another frame to above it is found in both directions."""
     core = core_with(
         transform("b", "a", 1.0, (3.0, 0.0, 0.0)), transform("root", "a", 9.0, (5.0, 0.0, 0.0))
     )
@@ -454,7 +454,7 @@ def test_of_two_ways_the_one_from_the_source_upwards_is_taken() -> None:
 
 
 def test_static_and_dynamic_transforms_replace_each_other() -> None:
-    """The last one says what a frame is."""
+    """The latest transform decides whether a frame is static."""
     core = core_with(transform("p", "c", 1.0))
     assert not core.can_transform_core("p", "c", at(0.5))[0]
     core.set_transform_static(transform("p", "c", 1.0), "me")
@@ -464,7 +464,7 @@ def test_static_and_dynamic_transforms_replace_each_other() -> None:
 
 
 def test_the_latest_common_time_leaves_out_static_frames() -> None:
-    """It is the oldest of the newest stamps on the way."""
+    """It is the oldest of the newest stamps on the path."""
     core = core_with(
         transform("map", "odom", 5.0),
         transform("odom", "base", 7.0),
@@ -485,7 +485,7 @@ def test_the_latest_common_time_leaves_out_static_frames() -> None:
 
 
 def test_clear_forgets_the_history_but_no_static_transform() -> None:
-    """Names stay as well."""
+    """Names are kept as well."""
     core = core_with(transform("p", "c", 1.0))
     core.set_transform_static(transform("c", "s"), "me")
     assert core.can_transform_core("p", "s", LATEST)[0]
@@ -506,7 +506,7 @@ def test_clear_forgets_the_history_but_no_static_transform() -> None:
 
 
 def test_two_times_are_joined_by_a_fixed_frame() -> None:
-    """Where the robot was a second ago, seen from where it is now."""
+    """An example is where the robot was a second ago, seen from where it is now."""
     core = core_with(*(transform("map", "robot", t, (t, 0.0, 0.0)) for t in (1.0, 2.0, 3.0)))
 
     found = core.lookup_transform_full_core("robot", at(3), "robot", at(1.5), "map")
@@ -527,7 +527,7 @@ def test_two_times_are_joined_by_a_fixed_frame() -> None:
 
 
 def test_the_methods_have_the_names_arguments_and_results_of_tf2_py() -> None:
-    """All 16, called as tf2_py's own tests call them."""
+    """All 16 are called as in tf2_py's own tests."""
     core = BufferCore(Duration(seconds=10))
     assert core.set_transform(transform("bar", "foo", 0.0), "unittest") is None  # type: ignore[func-returns-value]
     later = transform("bar", "foo", 1.0, (2.0, 0.0, 0.0))
@@ -555,7 +555,7 @@ def test_the_methods_have_the_names_arguments_and_results_of_tf2_py() -> None:
 
 
 def test_velocity_is_averaged_over_an_interval() -> None:
-    """As in tf2_py's test, and for a turn."""
+    """The cases are that of tf2_py's test, and a rotation."""
     core = core_with(*(transform("P", "C", float(t), (3.0 * t, 0.0, 0.0)) for t in range(5)))
     for t in range(5):
         core.set_transform(transform("P", "T", float(t), (0.0, 0.0, 0.0), yaw=0.1 * t), "me")
@@ -585,7 +585,7 @@ def texts(core: BufferCore) -> dict[str, Callable[[], str]]:
 
 
 def test_all_frames_are_described_as_by_tf2() -> None:
-    """As lines, YAML and Graphviz."""
+    """The formats are lines, YAML and Graphviz."""
     core = core_with(*(transform("bar", "foo", t) for t in (1.0, 1.5)))
 
     assert core.all_frames_as_string() == "Frame foo exists with parent bar.\n"
@@ -603,7 +603,7 @@ def test_all_frames_are_described_as_by_tf2() -> None:
 
 
 def test_an_empty_buffer_describes_itself() -> None:
-    """Spelled as in tf2."""
+    """The spelling is tf2's."""
     found = {name: text() for name, text in texts(BufferCore()).items()}
     assert found == {
         "string": "",

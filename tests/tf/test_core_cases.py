@@ -1,4 +1,4 @@
-"""The cases that tf2's tests of its core run through one by one, beside `test_buffer_core`."""
+"""The individual cases of tf2's tests of its core; see also `test_buffer_core`."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def core_with(*transforms: TransformStamped) -> BufferCore:
     ("parent", "child"), [("", ""), ("/", "/"), ("p", "/"), ("/", "c"), ("/same", "same")]
 )
 def test_a_name_that_is_only_a_slash_is_no_name(parent: str, child: str) -> None:
-    """The slash is left out first; a message nobody filled in has no names either."""
+    """The slash is removed first; a message that nobody filled in has no names either."""
     assert core_with(transform(parent, child))._getFrameStrings() == []
 
 
 def test_a_refused_transform_leaves_what_is_there() -> None:
-    """A driver's one bad reading makes no hole."""
+    """One bad reading of a driver must not create a gap."""
     core = core_with(transform("p", "c", 10.0))
     core.set_transform(transform("p", "c", 11.0, (nan, 0.0, 0.0)), "me")
 
@@ -76,7 +76,7 @@ def test_a_refused_transform_leaves_what_is_there() -> None:
 def test_a_rotation_is_taken_if_its_length_is_1(
     rotation: tuple[float, float, float, float], is_valid: bool
 ) -> None:
-    """Along each axis, and at both sides of the limit."""
+    """It is tested along each axis, and on both sides of the limit."""
     core = core_with(transform("p", "c", rotation=rotation))
 
     assert core.can_transform_core("p", "c", at(1))[0] is is_valid
@@ -101,7 +101,7 @@ TREES["two trees"] = TREES["one link"] | TREES["v"]
 def test_each_pair_of_frames_is_answered_for_the_time_that_was_asked_for(
     name: str, when: float, space: float
 ) -> None:
-    """With one sample or two, at the time 0 as well, and not from one tree to the other."""
+    """With one sample or two, also at time 0, and never between two trees."""
     tree = TREES[name]
     core = BufferCore()
     for child, (parent, (x, y)) in tree.items():
@@ -129,7 +129,7 @@ def test_each_pair_of_frames_is_answered_for_the_time_that_was_asked_for(
 
 
 def test_each_pair_on_a_ring_is_where_the_ring_has_it() -> None:
-    """Nine frames, 45 degrees apart on the unit circle: the last is the first again."""
+    """Nine frames are 45 degrees apart on the unit circle: the last one equals the first."""
     frames = "abcdefghi"
     x, y = cos(radians(45)) - 1, sin(radians(45))
     core = core_with(
@@ -151,7 +151,7 @@ def test_each_pair_on_a_ring_is_where_the_ring_has_it() -> None:
 
 
 def test_of_two_parents_at_one_time_the_last_to_come_holds() -> None:
-    """A frame has one parent."""
+    """A frame has only one parent."""
     core = core_with(transform("one", "c", 5.0), transform("two", "c", 5.0))
 
     for time in (at(5), LATEST):
@@ -169,7 +169,7 @@ TIMES = {"latest": LATEST, "old": at(5), "valid": at(15), "future": at(25)}
 
 @pytest.mark.parametrize("time", TIMES)
 def test_whether_there_is_data_decides_except_for_a_frame_and_itself(time: str) -> None:
-    """A question and its lookup agree."""
+    """`can_transform` and the lookup agree."""
     for target, source in itertools.product(("child", "other", "parent", "nobody"), repeat=2):
         if target != source and "nobody" in (target, source):
             continue
@@ -189,7 +189,7 @@ def test_whether_there_is_data_decides_except_for_a_frame_and_itself(time: str) 
 def test_of_two_times_only_that_of_a_frame_other_than_the_fixed_one_needs_data(
     source: str, fixed: str, target_time: str, source_time: str
 ) -> None:
-    """A frame seen from itself needs none."""
+    """A frame seen from itself needs no data."""
     expected = (fixed == "child" or target_time in ("latest", "valid")) and (
         source == fixed or source_time in ("latest", "valid")
     )
@@ -207,7 +207,7 @@ def test_of_two_times_only_that_of_a_frame_other_than_the_fixed_one_needs_data(
 def test_data_is_missing_upwards_and_downwards_over_one_link_and_two(
     target: str, source: str
 ) -> None:
-    """With one sample, and with two."""
+    """It is tested with one sample and with two."""
     core = core_with(transform("top", "p", 2.0), transform("p", "c", 2.0))
 
     def check(seconds: float, error: type[TransformException]) -> None:
@@ -225,7 +225,7 @@ def test_data_is_missing_upwards_and_downwards_over_one_link_and_two(
 
 
 def test_the_latest_common_time_is_the_same_in_both_directions() -> None:
-    """And moves on with the link that is behind."""
+    """It advances with the link that lags behind."""
     core = core_with(transform("top", "p", 2.0), transform("p", "a", 1.0))
     assert core.get_latest_common_time("a", "top") == at(1)
     core.set_transform(transform("p", "a", 3.0), "me")
@@ -246,7 +246,7 @@ def test_the_latest_common_time_is_the_same_in_both_directions() -> None:
 
 
 def test_a_static_transform_answers_with_the_time_that_was_asked_for() -> None:
-    """Its own stamp says nothing; repeating it changes nothing."""
+    """Its own stamp does not matter; repeating it changes nothing."""
     core = BufferCore()
     core.clear()
     for _ in range(2):
@@ -258,7 +258,7 @@ def test_a_static_transform_answers_with_the_time_that_was_asked_for() -> None:
 
 
 def test_a_frame_with_forgotten_history_may_become_static() -> None:
-    """As after a driver's restart in another mode."""
+    """A driver may restart in another mode."""
     core = core_with(transform("p", "c", 1.0))
     core.clear()
     core.set_transform_static(transform("p", "c", 1.0, (5.0, 0.0, 0.0)), "me")
@@ -270,7 +270,7 @@ def test_a_frame_with_forgotten_history_may_become_static() -> None:
 
 
 def test_a_frame_exists_once_it_is_named_as_child_or_parent() -> None:
-    """Without a slash; in the order in which they came."""
+    """Names have no leading slash, and are listed in order of arrival."""
     core = BufferCore()
     assert not core._frameExists("b")
     core.set_transform(transform("/parent", "/b"), "me")
@@ -282,7 +282,7 @@ def test_a_frame_exists_once_it_is_named_as_child_or_parent() -> None:
 
 
 def test_a_velocity_at_the_latest_time_takes_the_data_there_is() -> None:
-    """The interval may be longer, and stamps may be times of clocks, as in tf2_py's test."""
+    """The interval may exceed the data, and stamps may be clock times, as in tf2_py's test."""
     core = BufferCore()
     for second in range(5):
         one = transform("P", "C", 0.0, (3.0 * second, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""The questions of `make tf-differential`, without tf2's core to compare with."""
+"""Tests the questions of `make tf-differential`, without tf2's core to compare with."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from tests.tf.differential.__main__ import agree, cases, result
 
 
 def test_each_random_question_has_an_answer() -> None:
-    """A transform, a text or one of tf2's errors; any other exception would show a defect."""
+    """It is a transform, a text or one of tf2's errors; any other exception is a defect."""
     kinds = set()
     for case in cases(60):
         for answer in case.answers:
@@ -16,7 +16,7 @@ def test_each_random_question_has_an_answer() -> None:
 
 
 def test_answers_agree_within_the_last_digits_and_up_to_the_sign_of_a_quaternion() -> None:
-    """A quaternion and its negative are one rotation; a text has to be equal."""
+    """A quaternion and its negative are the same rotation; texts have to be equal."""
     assert agree("ok 1.0 2 3 0 0 0 1 5", "ok 1.0000000000001 2 3 -0 -0 -0 -1 5")
     assert not agree("ok 1.0 2 3 0 0 0 1 5", "ok 1.001 2 3 0 0 0 1 5")
     assert not agree("ok 1 2 3 0 0 0 1 5", "ok 1 2 3 0 0 0 1 6")

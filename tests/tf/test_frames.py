@@ -1,4 +1,4 @@
-"""The history of one frame: what tf2's tests of its caches say."""
+"""Tests of the history of one frame, taken from tf2's tests of its caches."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def stored(one: DynamicFrame) -> list[tuple[int, str]]:
 
 
 def parent_at(one: DynamicFrame | StaticFrame, time_ns: int) -> str | None:
-    """Return the parent at a time."""
+    """Return the parent at a given time."""
     found = one.find(time_ns)
     return None if found is None else found[0]
 
 
 def test_equal_stamps_are_kept_duplicates_are_not_and_what_is_too_old_leaves() -> None:
-    """The order is that of tf2: of equal stamps, the last to come is the newest."""
+    """The order is tf2's: of equal stamps, the one that arrived last is the newest."""
     one = frame(10)
     items = [(0, "a"), (10, "b"), (5, "c"), (3, "d"), (8, "e"), (8, "f"), (8, "g")]
     expected = [(10, "b"), (8, "g"), (8, "f"), (8, "e"), (5, "c"), (3, "d"), (0, "a")]
@@ -63,7 +63,7 @@ def test_every_stamp_is_found_in_whatever_order_they_came(order: int) -> None:
 
 
 def test_the_time_0_is_the_newest() -> None:
-    """It is tf2's word for it, also after newer data has come."""
+    """tf2 uses 0 for the latest time, even after newer data has arrived."""
     one = frame()
     for stamp in (1, 100):
         one.insert(stamp, f"p{stamp}", ORIGIN)
@@ -73,7 +73,7 @@ def test_the_time_0_is_the_newest() -> None:
 
 
 def test_one_pose_a_hundred_times_is_one_pose() -> None:
-    """Latched publishers repeat themselves."""
+    """Latched publishers repeat their transforms."""
     one = frame()
     for _ in range(100):
         assert one.insert(1, "p", ORIGIN)
@@ -82,7 +82,7 @@ def test_one_pose_a_hundred_times_is_one_pose() -> None:
 
 
 def test_a_translation_is_interpolated_along_a_line() -> None:
-    """For every time in between."""
+    """This holds for every time in between."""
     chance = random.Random(7)  # noqa: S311  # no secret
     for _ in range(100):
         one = frame()
@@ -99,7 +99,7 @@ def test_a_translation_is_interpolated_along_a_line() -> None:
 
 
 def test_between_two_parents_nothing_is_interpolated() -> None:
-    """The older pose holds until the frame is seen in its new parent."""
+    """The older pose is used until the frame has its new parent."""
     one = frame()
     one.insert(100, "old", ORIGIN)
     one.insert(200, "new", (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
@@ -109,7 +109,7 @@ def test_between_two_parents_nothing_is_interpolated() -> None:
 
 
 def test_slerp_takes_the_shorter_arc() -> None:
-    """A quaternion and its negative are one rotation."""
+    """A quaternion and its negative are the same rotation."""
     one: Pose = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     other: Pose = (0.0, 0.0, 0.0, 0.0, 0.0, -(0.5**0.5), -(0.5**0.5))  # 90 degrees around z
 
@@ -133,7 +133,7 @@ def test_the_history_ends_where_the_data_ends() -> None:
 
 
 def test_a_static_frame_has_its_newest_pose_at_any_time() -> None:
-    """Its stamp says nothing."""
+    """Its stamp does not matter."""
     one = StaticFrame("p1", ORIGIN)
     for stamp in range(2, 100):
         one.insert(stamp, f"p{stamp}", ORIGIN)
@@ -144,7 +144,7 @@ def test_a_static_frame_has_its_newest_pose_at_any_time() -> None:
 
 
 def test_without_room_a_history_does_not_grow() -> None:
-    """A flood of transforms takes no more memory than the limit."""
+    """A flood of transforms takes no more memory than the limit allows."""
     room = Room(10)
     one, other = frame(room=room), frame(room=room)
     for stamp in range(20):
@@ -159,7 +159,7 @@ def test_without_room_a_history_does_not_grow() -> None:
 
 
 def test_forgotten_poses_leave_the_lists() -> None:
-    """A history that runs for weeks stays as long as its cache time."""
+    """A history that runs for weeks is no longer than its cache time."""
     room = Room(1000)
     one = frame(100, room)
     for stamp in range(10_000):

@@ -1,4 +1,4 @@
-"""Random trees, compared with a computation that knows nothing of quaternions or trees."""
+"""Compares random trees with a computation that uses neither quaternions nor trees."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def matrix_of(pose: tuple[float, ...]) -> Matrix:
 @settings(deadline=None)
 @given(st.data())
 def test_any_two_frames_of_a_random_tree_agree_with_matrices(data: Any) -> None:
-    """Lookups at a common time, and between two times, to 1e-12 for coordinates up to 10."""
+    """Lookups at one time, and between two, agree to 1e-12 for coordinates up to 10."""
     size = data.draw(st.integers(2, 7))
     parents = [data.draw(st.integers(0, child - 1)) for child in range(1, size)]
     samples = [[(data.draw(places), data.draw(turns)) for _ in range(2)] for _ in parents]

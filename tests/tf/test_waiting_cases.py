@@ -1,4 +1,4 @@
-"""The cases that tf2_ros's tests of its buffer and listener run through, beside `test_buffer`."""
+"""The individual cases of tf2_ros's buffer and listener tests; see also `test_buffer`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def at(seconds: float) -> Time:
 
 @pytest.mark.parametrize("stamps", [range(1, 11), range(10, 0, -1)])
 async def test_a_wait_ends_with_the_sample_of_its_time(node: Node, stamps: range) -> None:
-    """Also when that is older than what has come before it."""
+    """This holds even if the sample is older than those that arrived before it."""
     buffer = Buffer(node)
     loop = asyncio.get_running_loop()
     task = loop.create_task(buffer.wait_for_transform("a", "b", at(stamps[-1])))
@@ -43,7 +43,7 @@ async def test_a_wait_ends_with_the_sample_of_its_time(node: Node, stamps: range
 
 @pytest.mark.parametrize("full", [False, True])
 async def test_what_is_there_is_returned_without_a_turn_of_the_loop(node: Node, full: bool) -> None:
-    """Neither for one time nor for two, and whatever the cache time is."""
+    """This holds for one time and for two, whatever the cache time is."""
     buffer = Buffer(node, cache_time=Duration(seconds=20.0))
     one = transform("foo", "bar", 5.0, (42.0, -3.14, 0.0))
     buffer.set_transform(one, "me")
@@ -59,7 +59,7 @@ async def test_what_is_there_is_returned_without_a_turn_of_the_loop(node: Node, 
 
 
 async def test_what_is_broadcast_is_what_is_looked_up(node_factory: Callable[..., Node]) -> None:
-    """Stamp, place and rotation; samples may arrive in any order; static ones hold at any time."""
+    """Samples may arrive in any order, and static ones are valid at any time."""
     async with node_factory("sender") as sender, node_factory("node") as node:
         buffer = Buffer(node)
         later, earlier = (transform("foo", "bar", t, (42.0, -3.14, 0.0)) for t in (0.3, 0.2))
@@ -96,7 +96,7 @@ async def test_a_listener_fills_another_buffer_from_then_on(node: Node) -> None:
 async def test_a_server_succeeds_in_telling_an_error_and_aborts_only_after_its_time(
     node: Node,
 ) -> None:
-    """As tf2's server: tf2's client in C++ does not read the result of an aborted goal."""
+    """tf2's server does so, since tf2's C++ client does not read results of aborted goals."""
     buffer = Buffer(node)
     BufferServer(buffer, node)
     client = node.create_action_client(LookupTransform, "tf2_buffer_server")
