@@ -1,4 +1,4 @@
-"""Time, Duration, and the clocks that tell and await time."""
+"""Tests of Time, Duration, and the clocks that tell and await time."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def ros(seconds: float) -> Time:
     [(0, 0, 0), (1, 0, 10**9), (1.75, 0, 1_750_000_000), (1, 5e8, 1_500_000_000), (0, 1.9, 1)],
 )
 def test_a_time_is_the_sum_of_its_parts(seconds: float, nanoseconds: float, expected: int) -> None:
-    """Fractions of a nanosecond are cut off, as in rclpy."""
+    """Fractions of a nanosecond are truncated, as in rclpy."""
     assert Time(seconds=seconds, nanoseconds=nanoseconds).nanoseconds == expected
     assert Duration(seconds=seconds, nanoseconds=nanoseconds).nanoseconds == expected
 
@@ -97,7 +97,7 @@ def test_a_time_is_the_sum_of_its_parts(seconds: float, nanoseconds: float, expe
     ],
 )
 def test_what_makes_no_time_is_refused(make: Callable[[], Any], error: type[Exception]) -> None:
-    """The kinds of error are rclpy's, so that code which handles them works with both."""
+    """The kinds of errors are rclpy's, so code that handles them works with both."""
     with pytest.raises(error):
         make()
 
@@ -115,7 +115,7 @@ def test_what_makes_no_time_is_refused(make: Callable[[], Any], error: type[Exce
     ],
 )
 def test_times_of_different_clocks_do_not_mix(operation: Callable[[Time, Time], Any]) -> None:
-    """A silent answer would be wrong, because their zeros differ."""
+    """Any result would be wrong, because their zeros differ."""
     with pytest.raises(TypeError, match="different clock types, STEADY_TIME and ROS_TIME"):
         operation(Time(clock_type=ClockType.STEADY_TIME), ros(0))
 
@@ -129,7 +129,7 @@ def test_a_time_equals_nothing_but_times() -> None:
 
 @given(STAMP, INT64)
 def test_taking_away_undoes_adding(stamp_ns: int, span_ns: int) -> None:
-    """Arithmetic is exact wherever the result can be held."""
+    """Arithmetic is exact wherever the result can be represented."""
     start, span = Time(nanoseconds=stamp_ns), Duration(nanoseconds=span_ns)
     if not 0 <= stamp_ns + span_ns < 2**63:
         with pytest.raises((OverflowError, ValueError)):
@@ -143,7 +143,7 @@ def test_taking_away_undoes_adding(stamp_ns: int, span_ns: int) -> None:
 
 @given(INT64, INT64)
 def test_durations_add_up_as_integers_do(a_ns: int, b_ns: int) -> None:
-    """No float comes in between."""
+    """No float is involved."""
     a, b = Duration(nanoseconds=a_ns), Duration(nanoseconds=b_ns)
     if -(2**63) <= a_ns + b_ns < 2**63:
         assert (a + b).nanoseconds == a_ns + b_ns
@@ -157,7 +157,7 @@ def test_durations_add_up_as_integers_do(a_ns: int, b_ns: int) -> None:
 def test_times_are_ordered_and_hashed_by_their_nanoseconds(
     a_ns: int, b_ns: int, clock_type: ClockType
 ) -> None:
-    """Times serve as keys and in sorted lists."""
+    """Times can be keys, and can be sorted."""
     a = Time(nanoseconds=a_ns, clock_type=clock_type)
     b = Time(nanoseconds=b_ns, clock_type=clock_type)
     outcomes = (a < b, a <= b, a > b, a >= b, a == b, a != b)
@@ -174,7 +174,7 @@ def test_times_are_ordered_and_hashed_by_their_nanoseconds(
 
 @given(INT64, INT64)
 def test_durations_are_ordered_and_hashed_by_their_nanoseconds(a_ns: int, b_ns: int) -> None:
-    """Negative ones included."""
+    """This includes negative ones."""
     a, b = Duration(nanoseconds=a_ns), Duration(nanoseconds=b_ns)
     assert (a < b, a <= b, a > b, a >= b) == (a_ns < b_ns, a_ns <= b_ns, a_ns > b_ns, a_ns >= b_ns)
     assert (a == b) is (a_ns == b_ns)
@@ -182,7 +182,7 @@ def test_durations_are_ordered_and_hashed_by_their_nanoseconds(a_ns: int, b_ns: 
 
 
 def test_nothing_else_is_compared_with_or_added_to_a_time() -> None:
-    """Both operands get their chance, then it is a TypeError."""
+    """Both operands are asked first, then it is a TypeError."""
     for value in (Time(nanoseconds=1), Duration(nanoseconds=1)):
         for operation in (operator.add, operator.sub, operator.lt, operator.le, operator.gt):
             with pytest.raises(TypeError):
@@ -193,7 +193,7 @@ def test_nothing_else_is_compared_with_or_added_to_a_time() -> None:
 
 
 def test_a_duration_is_stretched_by_numbers() -> None:
-    """Times infinity is infinite; whole factors may exceed what a float can hold."""
+    """Times infinity is infinite; integer factors may exceed the range of a float."""
     assert Duration(seconds=2) * 0.5 == Duration(seconds=1)
     assert 3 * Duration(seconds=2) == Duration(seconds=6)
     assert Duration(nanoseconds=2**60 + 1) * 3 == Duration(nanoseconds=3 * 2**60 + 3)
@@ -202,7 +202,7 @@ def test_a_duration_is_stretched_by_numbers() -> None:
 
 
 def test_times_say_what_they_are() -> None:
-    """The texts are rclpy's: logs of both read the same."""
+    """The texts are rclpy's, so logs of both look the same."""
     assert repr(ros(1.5)) == "Time(nanoseconds=1500000000, clock_type=ROS_TIME)"
     assert repr(Duration(nanoseconds=7)) == "Duration(nanoseconds=7)"
     assert str(Duration(nanoseconds=7)) == "7 nanoseconds"
@@ -212,7 +212,7 @@ def test_times_say_what_they_are() -> None:
 
 @given(STAMP.filter(lambda ns: ns < 2**31 * 10**9))
 def test_a_stamp_survives_a_message(stamp_ns: int) -> None:
-    """A header's stamp gives back the very nanosecond."""
+    """A header's stamp keeps every nanosecond."""
     stamp = Time(nanoseconds=stamp_ns, clock_type=ClockType.ROS_TIME)
     assert Time.from_msg(stamp.to_msg()) == stamp
 
@@ -227,7 +227,7 @@ def test_a_duration_survives_a_message(span_ns: int) -> None:
 
 
 def test_a_stamp_is_of_the_clock_one_says() -> None:
-    """ROS time unless told otherwise, as in rclpy."""
+    """The default is ROS time, as in rclpy."""
     msg = ros(3).to_msg()
     assert Time.from_msg(msg).clock_type is ClockType.ROS_TIME
     assert Time.from_msg(msg, clock_type=ClockType.SYSTEM_TIME) == Time(seconds=3)
@@ -235,7 +235,7 @@ def test_a_stamp_is_of_the_clock_one_says() -> None:
 
 @pytest.mark.parametrize("read", [Time.from_msg, Duration.from_msg])
 def test_only_the_fitting_message_is_read(read: Callable[[Any], Any]) -> None:
-    """Anything else that has a `sec` would be read as nonsense."""
+    """Any other object with a `sec` would give nonsense."""
     with pytest.raises(TypeError, match="builtin_interfaces/msg/"):
         read(12)
 
@@ -245,7 +245,7 @@ def test_only_the_fitting_message_is_read(read: Callable[[Any], Any]) -> None:
 
 @pytest.mark.parametrize("clock_type", REAL_TYPES)
 def test_a_clock_tells_its_own_time(clock_type: ClockType) -> None:
-    """Each type reads its source."""
+    """Each type reads its own source."""
     now = Clock(clock_type=clock_type).now()
     real_ns = time.monotonic_ns() if clock_type is ClockType.STEADY_TIME else time.time_ns()
     assert now.clock_type is clock_type
@@ -253,7 +253,7 @@ def test_a_clock_tells_its_own_time(clock_type: ClockType) -> None:
 
 
 def test_a_clock_of_ros_time_is_a_ros_clock() -> None:
-    """As in rclpy, whichever way it is made."""
+    """As in rclpy, this does not depend on how it is created."""
     assert isinstance(Clock(clock_type=ClockType.ROS_TIME), ROSClock)
     assert ROSClock().clock_type is ClockType.ROS_TIME
     assert SteadyClock().clock_type is ClockType.STEADY_TIME
@@ -274,7 +274,7 @@ def test_a_clock_needs_a_real_type(clock_type: Any, error: type[Exception]) -> N
 
 
 def test_ros_time_starts_at_zero() -> None:
-    """Before the first tick of a simulation its time is not known; the system's would be wrong."""
+    """Before the first tick of a simulation its time is unknown; system time would be wrong."""
     assert not ROSClock().ros_time_is_active
     clock = ROSClock()
     clock.set_ros_time_active(True)
@@ -285,7 +285,7 @@ def test_ros_time_starts_at_zero() -> None:
 
 
 def test_ros_time_set_before_it_is_switched_on_is_kept() -> None:
-    """And switching off goes back to the system's time, which nothing has touched."""
+    """Switching off returns to system time, which was not changed."""
     clock = ROSClock(time_base=ManualClock(ros(100)))
     clock.set_ros_time_override(ros(7))
     assert clock.now() == ros(100)
@@ -297,7 +297,7 @@ def test_ros_time_set_before_it_is_switched_on_is_kept() -> None:
 
 @pytest.mark.parametrize("clock", [Clock(), SteadyClock()])
 def test_only_ros_time_can_be_set(clock: Clock) -> None:
-    """The machine's time is not a simulation's to change."""
+    """A simulation may not change the machine's time."""
     with pytest.raises(TypeError, match="ROS_TIME"):
         clock.set_ros_time_override(Time())
     with pytest.raises(TypeError, match="ROS_TIME"):
@@ -306,7 +306,7 @@ def test_only_ros_time_can_be_set(clock: Clock) -> None:
 
 
 def test_ros_time_is_set_with_a_time() -> None:
-    """A bare number could be seconds or nanoseconds."""
+    """A plain number could mean seconds or nanoseconds."""
     with pytest.raises(TypeError, match="pass a Time"):
         ROSClock().set_ros_time_override(5)  # type: ignore[arg-type]
 
@@ -325,7 +325,7 @@ def test_ros_time_is_set_with_a_time() -> None:
     ],
 )
 def test_a_threshold_must_make_sense(arguments: dict[str, Any], text: str) -> None:
-    """The sign tells the direction, and a threshold that nothing can meet is a mistake."""
+    """The sign gives the direction, and a threshold that nothing can meet is a mistake."""
     with pytest.raises(ValueError, match=text):
         JumpThreshold(**arguments)
 
@@ -365,7 +365,7 @@ class Watch:
 def test_a_jump_calls_callbacks_whose_threshold_it_meets(
     forward: float, back: float, change: bool, to: float, called: bool
 ) -> None:
-    """From second 1; the callback before sees the old time, the one after the distance."""
+    """The clock starts at 1 s; the first callback sees the old time, the second the distance."""
     clock = ROSClock()
     clock.set_ros_time_override(ros(1))
     clock.set_ros_time_active(True)
@@ -385,7 +385,7 @@ def test_a_jump_calls_callbacks_whose_threshold_it_meets(
 def test_switching_the_source_calls_callbacks_that_asked_for_it(
     forward: float, back: float, change: bool, called: bool
 ) -> None:
-    """Once for each real switch."""
+    """They are called once for each actual switch."""
     clock = ROSClock()
     watch = Watch(clock, forward, back, change=change)
     for active in (True, True, False, False):
@@ -403,7 +403,7 @@ def test_setting_a_clock_that_is_not_driven_is_no_jump() -> None:
 
 
 def test_an_unregistered_callback_is_not_called() -> None:
-    """Neither after `unregister`, which may be called twice, nor after the `with` block."""
+    """This holds after `unregister`, which may be called twice, and after the `with` block."""
     clock = ROSClock()
     watch = Watch(clock, 0.1, -0.1, change=True)
     watch.handle.unregister()
@@ -419,7 +419,7 @@ def test_an_unregistered_callback_is_not_called() -> None:
 
 
 def test_a_callback_may_unregister_another() -> None:
-    """An entity that is destroyed by a leap hears no more of it."""
+    """An entity that a jump destroys is not called any more."""
     clock = ROSClock()
     threshold = JumpThreshold(min_forward=None, min_backward=None)
     seen: list[TimeJump] = []
@@ -433,7 +433,7 @@ def test_a_callback_may_unregister_another() -> None:
 
 
 def test_a_jump_callback_must_be_one() -> None:
-    """Nothing to call, or something that cannot be, is a mistake of the caller."""
+    """No callback, or one that is not callable, is a mistake of the caller."""
     threshold = JumpThreshold(min_forward=None, min_backward=None)
     with pytest.raises(ValueError, match="one of pre_callback and post_callback"):
         ROSClock().create_jump_callback(threshold)
@@ -458,7 +458,7 @@ async def test_sleeping_for_nothing_takes_one_turn(
 
 @pytest.fixture(params=["kernel", "loop"])
 def alarms(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the kernel's timers, and as on systems that have none."""
+    """Run with the kernel's timers, and as on systems without them."""
     if request.param == "loop":
         monkeypatch.setattr(time_base, "kernel_alarms", lambda *_, **__: None)
 
@@ -497,7 +497,7 @@ async def test_sleepers_wake_each_at_its_own_time() -> None:
 
 
 async def test_a_sleep_in_ros_time_ends_when_the_clock_is_set_past_its_end() -> None:
-    """Real time plays no part, and one leap wakes only those whose time has come."""
+    """Real time plays no part, and a jump wakes only those whose time has come."""
     manual = ManualClock()
     clock = ROSClock(time_base=manual)
     clock.set_ros_time_active(True)
@@ -521,7 +521,7 @@ async def test_a_sleep_in_ros_time_ends_when_the_clock_is_set_past_its_end() -> 
 
 @pytest.mark.parametrize("active", [True, False])
 async def test_switching_ros_time_ends_a_sleep_with_an_error(active: bool) -> None:
-    """Its end has lost its meaning: only the sleeper knows what is left to wait for."""
+    """Its end has lost its meaning: only the sleeper knows how long it still has to wait."""
     clock = ROSClock(time_base=ManualClock())
     clock.set_ros_time_active(not active)
     asyncio.get_running_loop().call_soon(clock.set_ros_time_active, active)
@@ -540,7 +540,7 @@ async def test_destroying_a_clock_ends_its_sleeps() -> None:
 
 @pytest.mark.parametrize("duration_sec", [0.0, 1.0])
 async def test_a_destroyed_clock_refuses_sleepers(duration_sec: float) -> None:
-    """A RuntimeError as in rclpy; the time can still be told."""
+    """It is a RuntimeError, as in rclpy; the time can still be read."""
     clock = ROSClock(time_base=ManualClock(ros(3)))
     clock.destroy()
     with pytest.raises(EntityDestroyedError):
@@ -551,13 +551,13 @@ async def test_a_destroyed_clock_refuses_sleepers(duration_sec: float) -> None:
 
 
 async def test_sleep_until_needs_a_time_of_its_own_clock() -> None:
-    """A ValueError as in rclpy."""
+    """It is a ValueError, as in rclpy."""
     with pytest.raises(ValueError, match="clock type does not match"):
         await Clock().sleep_until(ros(1))
 
 
 async def test_sleep_until_a_time_gone_by_takes_one_turn() -> None:
-    """It has nothing to wait for."""
+    """There is nothing to wait for."""
     turns: list[int] = []
     asyncio.get_running_loop().call_soon(turns.append, 1)
     await ROSClock(time_base=ManualClock(ros(5))).sleep_until(ros(5))
@@ -565,7 +565,7 @@ async def test_sleep_until_a_time_gone_by_takes_one_turn() -> None:
 
 
 async def test_a_cancelled_sleep_leaves_nothing_behind() -> None:
-    """A program that cancels sleeps all day does not grow."""
+    """The memory of a program that cancels many sleeps does not grow."""
     manual = ManualClock()
     clock = ROSClock(time_base=manual)
     futures = living(asyncio.Future)
@@ -579,7 +579,7 @@ async def test_a_cancelled_sleep_leaves_nothing_behind() -> None:
 
 
 class SettableTime(ManualClock):
-    """A machine whose system clock can be set."""
+    """Represents a machine whose system clock can be set."""
 
     offset_ns = 0
 
@@ -589,7 +589,7 @@ class SettableTime(ManualClock):
 
 
 async def test_setting_the_system_clock_changes_no_sleep() -> None:
-    """A second is a second, also when NTP sets the clock back by an hour meanwhile."""
+    """A second stays a second, even if NTP sets the clock back by an hour meanwhile."""
     machine = SettableTime(ros(10_000))
     clock = ROSClock(time_base=machine)
     async with asyncio.TaskGroup() as tasks:
@@ -610,7 +610,7 @@ async def test_setting_the_system_clock_changes_no_sleep() -> None:
 @pytest.mark.usefixtures("alarms")
 @pytest.mark.parametrize("machine", [MachineTime(), MachineTime().through_suspend()])
 async def test_a_machine_alarm_rings_once_and_not_too_early(machine: TimeBase) -> None:
-    """However the loop rounds, and whichever steady clock it goes by."""
+    """This holds however the loop rounds, and for either steady clock."""
     rung: asyncio.Future[int] = asyncio.get_running_loop().create_future()
     when_ns = machine.steady_ns() + 1_400_000
     machine.call_at(when_ns, lambda: rung.set_result(machine.steady_ns()))
@@ -621,7 +621,7 @@ async def test_a_machine_alarm_rings_once_and_not_too_early(machine: TimeBase) -
 async def test_an_alarm_in_the_past_rings_later_all_the_same(
     base: MachineTime | ManualClock,
 ) -> None:
-    """Never inside `call_at`: the caller has not finished yet."""
+    """It never rings inside `call_at`: the caller has not finished yet."""
     rung = asyncio.Event()
     alarm: Alarm = base.call_at(base.steady_ns() - 5, rung.set)
     assert not rung.is_set()
@@ -633,7 +633,7 @@ async def test_an_alarm_in_the_past_rings_later_all_the_same(
 
 @pytest.mark.usefixtures("alarms")
 async def test_a_cancelled_alarm_does_not_ring() -> None:
-    """Not even if it is due and the loop has not reached it yet."""
+    """This holds even if it is due, but the loop has not reached it yet."""
     machine = MachineTime()
     rung: list[int] = []
     alarm = machine.call_at(machine.steady_ns(), lambda: rung.append(1))
@@ -647,7 +647,7 @@ async def test_a_cancelled_alarm_does_not_ring() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
 async def test_alarms_ring_in_the_order_of_their_times() -> None:
-    """Whatever the order in which they were set, and though several are due at once.
+    """The order in which they were set does not matter, even if several are due at once.
 
     Timers of a loop begin when they are set, so that a pause between two may change their order.
     """
@@ -669,7 +669,7 @@ def open_files() -> int:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
 async def test_no_file_is_left_when_no_alarm_waits() -> None:
-    """Neither after one has rung, nor after the last was cancelled."""
+    """This holds after one has rung, and after the last one was cancelled."""
     before = open_files()
     machine = MachineTime()
     rung = asyncio.Event()
@@ -699,7 +699,7 @@ async def test_an_alarm_may_count_what_the_host_is_suspended() -> None:
 
 
 def timer_clocks() -> Iterator[tuple[str, int]]:
-    """Yield each file that is a timer, with its clock."""
+    """Yield each open timer file, with its clock."""
     for entry in Path("/proc/self/fdinfo").iterdir():
         with suppress(OSError):
             for line in entry.read_text(encoding="ascii").splitlines():
@@ -708,7 +708,7 @@ def timer_clocks() -> Iterator[tuple[str, int]]:
 
 
 def test_time_that_is_stepped_is_suspended_with_nothing() -> None:
-    """A manual clock steps every time there is."""
+    """A manual clock is not affected by suspension."""
     clock = ManualClock()
     assert clock.through_suspend() is clock
 
@@ -718,7 +718,7 @@ def test_time_that_is_stepped_is_suspended_with_nothing() -> None:
 def test_no_file_is_left_by_a_loop_that_ends(
     new_loop: Callable[[], asyncio.AbstractEventLoop],
 ) -> None:
-    """Not even if it is closed while an alarm is waiting."""
+    """This holds even if it is closed while an alarm is waiting."""
 
     async def main() -> None:
         machine = MachineTime()
@@ -754,7 +754,7 @@ def test_an_alarm_cancelled_after_its_loop_lets_go_of_the_file() -> None:
 async def test_a_loop_that_cannot_wait_for_files_rings_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """With its own timers, and without leaving the file open."""
+    """It uses its own timers, and does not leave the file open."""
 
     def refuse(*_: object) -> None:
         raise NotImplementedError
@@ -772,7 +772,7 @@ async def test_a_loop_that_cannot_wait_for_files_rings_all_the_same(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
 async def test_a_false_alarm_calls_nothing() -> None:
-    """The file may be reported readable, and set to another time before it is read."""
+    """The file may be reported as readable, and be set to another time before it is read."""
     rung = asyncio.Event()
     alarms = timerfd.KernelAlarms(asyncio.get_running_loop())
     alarm = alarms.add(10**18, rung.set)
@@ -787,7 +787,7 @@ async def test_a_false_alarm_calls_nothing() -> None:
 async def test_without_the_kernels_timers_the_loop_rings(
     broken: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A system without them, or one that has no file to spare, is less exact, not broken."""
+    """A system without them, or without a free descriptor, is less exact but works."""
 
     def fail(*_: object) -> None:
         raise OSError(errno.EMFILE, "too many")
@@ -800,7 +800,7 @@ async def test_without_the_kernels_timers_the_loop_rings(
 
 
 async def test_a_failing_alarm_does_not_silence_the_others() -> None:
-    """Its error is reported by the loop; those due at the same time ring all the same."""
+    """The loop reports its error; other alarms due at the same time still ring."""
 
     def fail() -> None:
         raise ZeroDivisionError
@@ -821,7 +821,7 @@ async def test_a_failing_alarm_does_not_silence_the_others() -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 20), st.booleans())), st.integers(0, 20))
 def test_a_timer_heap_calls_what_is_due_in_order(entries: list[tuple[int, bool]], now: int) -> None:
-    """By time, then by arrival, without what was cancelled; the rest stays."""
+    """The order is by time, then by arrival; cancelled entries are skipped, others stay."""
     heap = TimerHeap()
     called: list[tuple[int, int]] = []
     for number, (when, cancelled) in enumerate(entries):
@@ -854,7 +854,7 @@ def test_a_timer_heap_forgets_cancelled_entries() -> None:
 
 
 def test_what_a_callback_adds_waits_for_the_next_round() -> None:
-    """Otherwise a period of 0 would never end a round; and a callback may cancel another."""
+    """Otherwise a period of 0 would never end a round; a callback may also cancel another."""
     heap = TimerHeap()
     called: list[str] = []
 
@@ -876,7 +876,7 @@ def test_what_a_callback_adds_waits_for_the_next_round() -> None:
 
 
 async def test_manual_time_stands_still() -> None:
-    """It is of type ROS_TIME, as a node's clock tells it, and begins where one says."""
+    """Its type is ROS_TIME, like a node's clock, and it begins where the test says."""
     assert ManualClock().now() == ros(0)
     manual = ManualClock(ros(5))
     assert manual.now() == ros(5)
@@ -889,13 +889,13 @@ async def test_manual_time_stands_still() -> None:
 
 @pytest.mark.parametrize("move", [ManualClock.advance, ManualClock.jump])
 async def test_manual_time_does_not_go_back(move: Any) -> None:
-    """Leaps back are made with `set_ros_time_override`."""
+    """Jumps back are made with `set_ros_time_override`."""
     with pytest.raises(ValueError, match="does not go back"):
         await move(ManualClock(), -1)
 
 
 async def test_advance_walks_and_jump_leaps() -> None:
-    """Callbacks see each step of `advance`, and only the end of a jump."""
+    """Callbacks see each step of `advance`, but only the end of a `jump`."""
     manual = ManualClock()
     clock = ROSClock(time_base=manual)
     seen: list[float] = []
@@ -916,7 +916,7 @@ async def test_advance_walks_and_jump_leaps() -> None:
 
 
 async def test_advance_settles_between_two_points_in_time() -> None:
-    """A chain of callbacks ends before time moves on, however many turns it takes."""
+    """A chain of callbacks ends before time moves on, however many iterations it takes."""
     manual = ManualClock()
     clock = ROSClock(time_base=manual)
     seen: list[tuple[str, float]] = []

@@ -1,4 +1,4 @@
-"""The alarm that deadlines and leases are made of."""
+"""Tests of the alarm on which deadlines and leases are built."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def clock() -> ManualClock:
-    """The time, which tests step."""
+    """Return the time, which tests step."""
     return ManualClock()
 
 
 def counting(found: list[int], *, again: bool) -> Callable[[int], bool]:
-    """Return a function that notes the periods of each call."""
+    """Return a function that records the periods of each call."""
 
     def note(periods: int) -> bool:
         found.append(periods)
@@ -31,7 +31,7 @@ def counting(found: list[int], *, again: bool) -> Callable[[int], bool]:
 
 
 async def test_it_counts_from_the_last_sign(clock: ManualClock) -> None:
-    """However often it has rung since."""
+    """This does not depend on how often it has rung since."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=True))
     alarm.start()
@@ -48,7 +48,7 @@ async def test_it_counts_from_the_last_sign(clock: ManualClock) -> None:
 
 
 async def test_it_may_wait_for_the_next_sign(clock: ManualClock) -> None:
-    """A lease is lost once."""
+    """A lease is lost only once."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=False))
     alarm.start()
@@ -61,7 +61,7 @@ async def test_it_may_wait_for_the_next_sign(clock: ManualClock) -> None:
 
 
 async def test_a_sign_that_was_read_late_counts(clock: ManualClock) -> None:
-    """After a stall of the loop the alarm rings first, and then what waits in sockets is read."""
+    """After a stall of the loop, the alarm rings before the sockets are read."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=True))
     alarm.start()
@@ -76,7 +76,7 @@ async def test_a_sign_that_was_read_late_counts(clock: ManualClock) -> None:
 
 
 async def test_nothing_rings_after_the_end(clock: ManualClock) -> None:
-    """Not even when the alarm has rung already, and is about to be judged."""
+    """This holds even if the alarm has rung and is about to be judged."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=True))
     alarm.start()
@@ -88,7 +88,7 @@ async def test_nothing_rings_after_the_end(clock: ManualClock) -> None:
 
 
 async def test_it_works_on_the_time_of_the_machine() -> None:
-    """Where no test steps it."""
+    """Here no test steps the time."""
     rung = asyncio.Event()
 
     def ring(periods: int) -> bool:
@@ -104,7 +104,7 @@ async def test_it_works_on_the_time_of_the_machine() -> None:
 
 
 async def test_a_sign_may_be_forgotten(clock: ManualClock) -> None:
-    """Then it waits for the next as for the first, also if the alarm has just rung."""
+    """Then it waits for the next sign as for the first, even if it has just rung."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=False))
     alarm.start()
@@ -124,7 +124,7 @@ async def test_a_sign_may_be_forgotten(clock: ManualClock) -> None:
 
 @pytest.fixture
 def ros_clock(clock: ManualClock) -> ROSClock:
-    """A clock that a simulation sets."""
+    """Return a clock that a simulation sets."""
     one = ROSClock(time_base=clock)
     one.set_ros_time_active(True)
     one.set_ros_time_override(Time(seconds=100))
@@ -132,14 +132,14 @@ def ros_clock(clock: ManualClock) -> ROSClock:
 
 
 def set_to(ros_clock: ROSClock, seconds: float) -> None:
-    """Do what a message on /clock does."""
+    """Set the clock as a message on /clock does."""
     ros_clock.set_ros_time_override(Time(nanoseconds=round(seconds * 1e9)))
 
 
 async def test_a_slow_simulation_has_its_own_seconds(
     clock: ManualClock, ros_clock: ROSClock
 ) -> None:
-    """Ten seconds of the machine in which the simulation gets on by 0.9 s are no second."""
+    """Ten seconds in which the simulation advances by 0.9 s are less than a second."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=False), ros_clock)
     alarm.start()
@@ -156,7 +156,7 @@ async def test_a_slow_simulation_has_its_own_seconds(
 async def test_a_fast_simulation_has_its_own_seconds(
     clock: ManualClock, ros_clock: ROSClock
 ) -> None:
-    """Nothing is waited for on the steady clock."""
+    """Nothing is measured by the steady clock."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=False), ros_clock)
     alarm.start()
@@ -169,7 +169,7 @@ async def test_a_fast_simulation_has_its_own_seconds(
 async def test_a_clock_that_stands_still_is_silent_too(
     clock: ManualClock, ros_clock: ROSClock
 ) -> None:
-    """A simulation that is paused or gone steers nothing."""
+    """A simulation that is paused or gone controls nothing."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=False), ros_clock)
     alarm.start()
@@ -204,7 +204,7 @@ async def test_a_jump_back_lengthens_nothing(clock: ManualClock, ros_clock: ROSC
 
 
 async def test_a_clock_that_nobody_sets_counts_as_the_steady_one(clock: ManualClock) -> None:
-    """ROS time without a simulation, and the clocks of the machine."""
+    """Examples are ROS time without a simulation, and the machine's clocks."""
     found: list[int] = []
     for one in (ROSClock(time_base=clock), SteadyClock(time_base=clock)):
         alarm = SilenceAlarm(clock, 10**9, counting(found, again=False), one)

@@ -1,4 +1,4 @@
-"""Signals that end a program: which of them count as one, and what a later one still sends."""
+"""Tests of signals that end a program: which count as one, and what a later one still sends."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
 def test_signals_within_a_second_are_one(
     numbers: tuple[signal.Signals, ...], pause_sec: float
 ) -> None:
-    """Parents forward a signal that the process group has got already."""
+    """Parents forward a signal that the process group has already received."""
     with Program(WAITS_FOR_EVER) as program:
         program.wait_until_ready()
         program.send(*numbers, pause_sec=pause_sec)
@@ -112,7 +112,7 @@ def test_signals_within_a_second_are_one(
 
 
 def test_a_parent_that_forwards_the_signal_of_its_group_ends_the_program_cleanly() -> None:
-    """GNU timeout does: Ctrl-C reaches its command twice."""
+    """GNU timeout does this: Ctrl-C reaches its command twice."""
     before = ("timeout", "--foreground", "60")
     with Program(WAITS_FOR_EVER, before=before, start_new_session=True) as program:
         program.wait_until_ready()
@@ -123,7 +123,7 @@ def test_a_parent_that_forwards_the_signal_of_its_group_ends_the_program_cleanly
 
 @pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
 def test_a_signal_after_the_first_second_ends_the_program_at_once(number: signal.Signals) -> None:
-    """Even if a callback refuses to end."""
+    """This holds even if a callback refuses to end."""
     with Program(STUBBORN) as program:
         program.wait_until_ready()
         assert program.process.stdout is not None
@@ -152,7 +152,7 @@ def test_the_second_signal_works_while_a_callback_blocks_the_loop(step: str) -> 
 
 @pytest.mark.parametrize("step", ["time.sleep(1)", "pass", "await_for_ever"])
 def test_a_second_signal_sends_the_stops_of_leases_and_then_what_was_published(step: str) -> None:
-    """A robot whose program is ended at once must not drive on, nor if its output is not read."""
+    """A robot must not drive on if its program is ended at once, or if nobody reads its output."""
     reading, writing = os.pipe()
     body = STUBBORN if step == "await_for_ever" else BLOCKED.replace("{step}", step)
     told = SAYS_STOP.replace("{descriptor}", str(writing))
@@ -172,7 +172,7 @@ def test_a_second_signal_sends_the_stops_of_leases_and_then_what_was_published(s
 
 
 def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
-    """The others are sent, and the time has a limit."""
+    """The others are sent, and the time is limited."""
     hooks = """
     from aionode._process import sudden_end as _sudden_end
     _sudden_end.STOPS.append(lambda: 1 / 0)
@@ -189,7 +189,7 @@ def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
 
 
 def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
-    """A frame that a socket took in part would be sent once more from its beginning."""
+    """Otherwise a frame that a socket took in part would be sent again from its beginning."""
     body = """
     import signal
     from aionode._process import sudden_end as _sudden_end
@@ -223,7 +223,7 @@ def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
 
 
 def test_the_second_signal_does_not_wait_for_a_reader_of_stderr() -> None:
-    """A full pipe would block the write of the last line."""
+    """A full pipe would block while the last line is written."""
     full = """
     def callback():
         try:
@@ -284,7 +284,7 @@ print("after run", flush=True)
 def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once(
     loop: str,
 ) -> None:
-    """A thread cannot be cancelled, so the user has to be told, and needs a way to stop it."""
+    """A thread cannot be cancelled, so the user has to be told, and needs a way to end it."""
     with Program(SOON, THREAD_AT_WORK.replace("{loop}", loop)) as program:
         program.wait_until_ready()
         program.send(SIGINT)
@@ -298,7 +298,7 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
 
 
 def test_a_program_that_ignores_sighup_goes_on_ignoring_it() -> None:
-    """So it is under nohup, which is meant to outlive the terminal."""
+    """Under nohup it does, since it is meant to outlive the terminal."""
     with Program(WAITS_FOR_EVER, before=("nohup",)) as program:
         program.wait_until_ready()
         program.send(SIGHUP)
@@ -310,7 +310,7 @@ def test_a_program_that_ignores_sighup_goes_on_ignoring_it() -> None:
 
 
 def test_a_handler_of_the_program_for_sighup_is_left_alone() -> None:
-    """Many programs read their settings again at it."""
+    """Many programs reload their settings on SIGHUP."""
     own = "import signal\nsignal.signal(signal.SIGHUP, lambda *_: print('again', flush=True))"
     with Program(own, WAITS_FOR_EVER) as program:
         program.wait_until_ready()
@@ -340,7 +340,7 @@ aionode.run(main, args=[])
 
 @pytest.mark.parametrize("number", [SIGTERM, SIGHUP])
 def test_a_signal_ends_a_forked_child_as_without_aionode(number: signal.Signals) -> None:
-    """`multiprocessing` ends its workers by SIGTERM; nothing of aionode runs in them."""
+    """`multiprocessing` ends its workers with SIGTERM; nothing of aionode runs in them."""
     with Program(FORKS) as program:
         program.wait_until_ready()
         children = Path(f"/proc/{program.process.pid}/task/{program.process.pid}/children")
@@ -381,7 +381,7 @@ finally:
     [("pass", 0), ("1 / 0", 1)],
 )
 def test_a_lost_terminal_keeps_no_program_from_its_last_message(end: str, status: int) -> None:
-    """Each write to it fails with EIO: of `print`, of the log, and of the final traceback."""
+    """Each write fails with EIO: that of `print`, of the log, and of the final traceback."""
     master, terminal = pty.openpty()
     reading, writing = os.pipe()
     body = PRINTS_BEFORE_ITS_LAST_MESSAGE.replace("{descriptor}", str(writing))
@@ -407,7 +407,7 @@ def test_a_lost_terminal_keeps_no_program_from_its_last_message(end: str, status
 def test_a_pipe_whose_reader_has_ended_keeps_no_program_from_its_last_message(
     number: signal.Signals,
 ) -> None:
-    """Ctrl-C ends the other programs of a pipeline too."""
+    """Ctrl-C ends the other programs of a pipeline, too."""
     reading, writing = os.pipe()
     body = PRINTS_BEFORE_ITS_LAST_MESSAGE.replace("{descriptor}", str(writing))
     with Program(body.replace("{end}", "pass"), pass_fds=(writing,)) as program:
@@ -424,13 +424,13 @@ def test_a_pipe_whose_reader_has_ended_keeps_no_program_from_its_last_message(
 
 
 def run_in_this_process(main: object) -> None:
-    """Run without reading the arguments of pytest."""
+    """Run without reading pytest's arguments."""
     aionode.run(main, args=[], loop_factory=asyncio.new_event_loop)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
 def test_signal_handlers_are_restored(number: signal.Signals) -> None:
-    """The surrounding program has its own."""
+    """The surrounding program has its own handlers."""
     before = signal.getsignal(number)
 
     async def main() -> None:
@@ -441,7 +441,7 @@ def test_signal_handlers_are_restored(number: signal.Signals) -> None:
 
 
 def test_a_handler_that_the_program_has_set_meanwhile_stays() -> None:
-    """It is not ours to take away."""
+    """It does not belong to aionode."""
 
     def handler(*_: object) -> None: ...
 

@@ -1,4 +1,4 @@
-"""Whether another process is stopped."""
+"""Tests of how another process is seen to be stopped."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def process() -> Iterator[subprocess.Popen[bytes]]:
 def test_a_process_is_stopped_from_the_signal_until_it_goes_on(
     process: subprocess.Popen[bytes],
 ) -> None:
-    """Others give its connections up meanwhile."""
+    """Others cut their connections to it meanwhile."""
     assert not is_stopped(process.pid)
     process.send_signal(signal.SIGSTOP)
     os.waitid(os.P_PID, process.pid, os.WSTOPPED)
@@ -43,7 +43,7 @@ def test_a_process_is_stopped_from_the_signal_until_it_goes_on(
 
 
 def test_a_process_that_has_ended_is_not_stopped(process: subprocess.Popen[bytes]) -> None:
-    """Its sockets tell that it has ended."""
+    """Its closed sockets show that it has ended."""
     process.kill()
     process.wait()
 
@@ -69,7 +69,7 @@ def run_on(process: subprocess.Popen[bytes]) -> None:
 def test_a_process_is_stopped_if_it_has_not_run_since_the_last_look(
     process: subprocess.Popen[bytes],
 ) -> None:
-    """The first look after the signal cannot tell when it last ran."""
+    """The first look after the signal cannot tell when the process last ran."""
     with closing(WatchedProcess(process.pid)) as watched:
         assert not watched.is_stopped()
         stop(process)
@@ -84,7 +84,7 @@ def test_a_process_is_stopped_if_it_has_not_run_since_the_last_look(
 def test_a_process_that_is_stopped_at_each_look_but_runs_between_is_not_stopped(
     process: subprocess.Popen[bytes],
 ) -> None:
-    """As under strace, where each system call stops it, and it still answers."""
+    """Under strace, each system call stops it, but it still answers."""
     with closing(WatchedProcess(process.pid)) as watched:
         for _ in range(4):
             run_on(process)
@@ -120,7 +120,7 @@ def test_a_watched_process_that_has_ended_is_not_stopped(
 def test_pids_of_another_namespace_or_boot_are_told_apart(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A container's process 7 is another one than the host's."""
+    """Process 7 of a container is not process 7 of the host."""
     here = pid_space()
     other = tmp_path / "boot_id"
     other.write_text("another boot")
@@ -133,7 +133,7 @@ def test_pids_of_another_namespace_or_boot_are_told_apart(
 def test_where_the_system_tells_nothing_pids_mean_nothing(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """As in a sandbox without /proc: then leases are short."""
+    """In a sandbox without /proc, leases are short instead."""
     monkeypatch.setattr(stopped, "PID_NAMESPACE", tmp_path / "hidden")
 
     assert pid_space() is None
@@ -142,7 +142,7 @@ def test_where_the_system_tells_nothing_pids_mean_nothing(
 def test_where_proc_has_the_pids_of_others_pids_mean_nothing(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """As after `unshare --pid` without `--mount-proc`: process 7 there is another one than here."""
+    """After `unshare --pid` without `--mount-proc`, process 7 there is not process 7 here."""
     foreign = tmp_path / "self"
     foreign.symlink_to("4711")
     monkeypatch.setattr(stopped, "OWN_PROCESS", foreign)

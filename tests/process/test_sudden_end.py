@@ -1,4 +1,4 @@
-"""What a signal has interrupted: code that sends, whose step has to end before anything is sent."""
+"""Tests of interrupted senders, whose step has to end before anything else is sent."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ PUBLISHING = {Publisher.publish.__code__, Client.call.__code__}
 
 
 def called_in(module: str, call: object) -> object:
-    """Return what `call` returns when a function of a module calls it."""
+    """Return the result of `call`, called by a function of a module."""
     made = ModuleType(module)
     exec("def run(call):\n    return call()", vars(made))  # noqa: S102  # a frame of that module
     return made.run(call)
 
 
 def test_a_callback_that_a_transport_has_called_is_not_sending() -> None:
-    """It may block for any time, and the connection is at rest."""
+    """It may block for any time, and the connection is idle."""
     inside = lambda: is_sending(sys._getframe())  # noqa: E731
 
     assert not is_sending(sys._getframe())
@@ -45,7 +45,7 @@ def test_a_callback_that_a_transport_has_called_is_not_sending() -> None:
 
 
 def test_code_between_a_transport_and_a_callback_is_sending() -> None:
-    """The transport goes on when that code returns, with bytes that it has read or written."""
+    """When that code returns, the transport continues with bytes that it has read or written."""
     for between in ("json", "rclpy.executors", "aionode.engine.rules.goal"):
         made = ModuleType(between)
         exec("import sys\ndef run(test):\n    return test(sys._getframe())", vars(made))  # noqa: S102
@@ -56,7 +56,7 @@ def test_code_between_a_transport_and_a_callback_is_sending() -> None:
 
 
 class Interrupted:
-    """Looks whether a signal at each call of this thread would find code that sends.
+    """Checks at each call of this thread whether a signal would find code that sends.
 
     Attributes:
         writes: How often each function of `WRITES` was called by aionode.
@@ -70,7 +70,7 @@ class Interrupted:
         self.unmarked: set[str] = set()
 
     def __call__(self, frame: FrameType, event: str, function: Any) -> None:
-        """Look at one call."""
+        """Check one call."""
         name = frame.f_globals.get("__name__", "aionode")
         if not name.startswith("aionode"):
             return
@@ -92,7 +92,7 @@ def frames_of(frame: FrameType | None) -> Iterator[FrameType]:
 
 
 def test_the_transport_of_another_package_is_sending() -> None:
-    """Its writers hold a part of a frame as well, and it derives from aionode's contract."""
+    """Its writers may hold part of a frame as well, and it derives from aionode's contract."""
     made = ModuleType("own_transport")
     exec(  # noqa: S102  # a module of its own
         "import sys\nfrom aionode.transport.base import Writer\n"
@@ -117,7 +117,7 @@ async def test_whatever_sends_says_so() -> None:
 async def test_a_package_that_forgets_to_say_so_is_found(
     package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As when it has moved: the test before would pass if it looked at nothing."""
+    """A package that has moved is an example; the test before would pass if it checked nothing."""
     marked = [each for each in sudden_end.SENDING if not each.startswith(package)]
     monkeypatch.setattr(sudden_end, "SENDING", marked)
 
@@ -127,7 +127,7 @@ async def test_a_package_that_forgets_to_say_so_is_found(
 
 
 async def sent_everything() -> Interrupted:
-    """Send messages, a large one and a request, and return what was seen of each call."""
+    """Send messages, a large one and a request; return what was seen at each call."""
     interrupted = Interrupted()
     sys.setprofile(interrupted)
     try:

@@ -1,4 +1,4 @@
-"""Ctrl-Z at a program with open leases."""
+"""Tests of Ctrl-Z in a program with open leases."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_the_stop_is_sent_before_a_program_with_a_lease_is_suspended(step: str) 
 
 
 def test_a_program_is_suspended_at_once_after_its_last_lease() -> None:
-    """Without a lease, a program is as it is without aionode."""
+    """Without a lease, a program behaves as without aionode."""
     body = """
     import signal
     from aionode._process.suspension import suspension
@@ -82,7 +82,7 @@ def test_a_program_is_suspended_at_once_after_its_last_lease() -> None:
 
 @pytest.mark.parametrize("own", [signal.SIG_IGN, lambda *_: None])
 def test_a_handler_of_the_program_stays(own: signal.Handlers) -> None:
-    """A shell without job control has SIGTSTP ignored, and some programs tidy their terminal."""
+    """A shell without job control ignores SIGTSTP, and some programs restore their terminal."""
     handler = SuspensionHandler()
     before = signal.signal(signal.SIGTSTP, own)
     try:
@@ -95,7 +95,7 @@ def test_a_handler_of_the_program_stays(own: signal.Handlers) -> None:
 
 
 def test_a_lease_in_another_thread_handles_no_signals() -> None:
-    """Python allows that in the main thread only."""
+    """Python allows signal handlers in the main thread only."""
     handler = SuspensionHandler()
     thread = threading.Thread(target=handler.install)
     thread.start()

@@ -1,4 +1,4 @@
-"""Tracebacks that show the program, not aionode."""
+"""Tests of tracebacks that show the program's lines, not aionode's."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def failing_check() -> None:
 
 
 def error_of_a_program() -> Exception:
-    """Return an error with a cause, each of which has lines of aionode."""
+    """Return an error with a cause; both have lines of aionode."""
     try:
         try:
             failing_check()
@@ -29,7 +29,7 @@ def error_of_a_program() -> Exception:
 
 
 def test_the_lines_of_aionode_are_left_out() -> None:
-    """A program's own line is the last one, in the error, its cause and the members of a group."""
+    """The last line is the program's own, in the error, its cause and the members of a group."""
     error = error_of_a_program()
     for text in (traceback_text(error), traceback_text(ExceptionGroup("several", [error]))):
         assert "in failing_check" in text
@@ -39,7 +39,7 @@ def test_the_lines_of_aionode_are_left_out() -> None:
 
 
 def test_a_variable_shows_all_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For those who look for a mistake in aionode."""
+    """It is for people who look for a mistake in aionode."""
     monkeypatch.setenv("AIONODE_TRACEBACK", "1")
 
     assert "aionode/message" in traceback_text(error_of_a_program())
@@ -47,7 +47,7 @@ def test_a_variable_shows_all_lines(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_error_that_is_all_in_aionode_keeps_its_lines() -> None:
-    """Without them, nothing would tell where it is."""
+    """Without them, nothing would show where it is."""
     with pytest.raises(MessageError) as raised:
         check(Int32(data="five"))  # type: ignore[arg-type]  # the mistake
     error = raised.value
@@ -60,7 +60,7 @@ def test_an_error_that_is_all_in_aionode_keeps_its_lines() -> None:
 
 
 def test_the_examples_of_aionode_are_programs() -> None:
-    """Their lines are shown, and copied."""
+    """Users copy them, so their lines are shown."""
     from aionode._process.tracebacks import is_of_library
 
     assert not is_of_library(failure_text.__code__.co_filename.replace("runner", "examples/pubsub"))
