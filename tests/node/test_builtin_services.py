@@ -1,4 +1,4 @@
-"""The offers of every node: log, parameters, types, time, and arguments."""
+"""Tests of what every node offers: log, parameters, types, time, and arguments."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 async def test_parameters_can_be_read_and_set_by_another_node(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """Over the six services, with the client that awaits them."""
+    """It uses the six services, through the client that awaits them."""
     node.declare_parameter("speed", 1.5)
     client = AsyncParameterClient(node_factory("other"), "/node")
     assert await client.wait_for_services()
@@ -67,7 +67,7 @@ async def test_parameters_can_be_read_and_set_by_another_node(
 
 
 async def test_an_undeclared_parameter_is_refused_by_the_service(node: Node) -> None:
-    """And not by an exception, which would end the node that is asked."""
+    """An exception would end the node that was asked."""
     client = AsyncParameterClient(node, "node")
     (result,) = await client.set_parameters([Parameter("nope", value=5)])
     assert not result.successful
@@ -76,7 +76,7 @@ async def test_an_undeclared_parameter_is_refused_by_the_service(node: Node) -> 
 
 
 async def test_a_parameter_file_is_loaded_into_a_running_node(node: Node, tmp_path: Path) -> None:
-    """As `param load` does it."""
+    """`param load` does the same."""
     node.declare_parameter("speed", 1.0)
     file = tmp_path / "speed.yaml"
     file.write_text("/node: {ros__parameters: {speed: 3.0}}")
@@ -86,12 +86,12 @@ async def test_a_parameter_file_is_loaded_into_a_running_node(node: Node, tmp_pa
 
 
 async def test_waiting_for_parameter_services_can_end_without_them(node: Node) -> None:
-    """With False, as every such wait."""
+    """The wait returns False, like every such wait."""
     assert not await AsyncParameterClient(node, "/ghost").wait_for_services(timeout_sec=0)
 
 
 async def test_changes_of_parameters_are_published(node: Node, manual_clock: Any) -> None:
-    """With the node's name and time."""
+    """The event has the node's name and the time."""
     await manual_clock.advance(2.0)
     events = node.create_subscription(ParameterEvent, "/parameter_events")
     node.declare_parameter("speed", 1.0)
@@ -104,7 +104,7 @@ async def test_changes_of_parameters_are_published(node: Node, manual_clock: Any
 
 
 async def test_overrides_come_from_arguments_and_the_constructor(context: Context) -> None:
-    """The constructor's win over those of the command line."""
+    """The constructor takes precedence over the command line."""
     node = Node(
         "node",
         context=context,
@@ -116,7 +116,7 @@ async def test_overrides_come_from_arguments_and_the_constructor(context: Contex
 
 
 async def test_overrides_can_declare_parameters_by_themselves(context: Context) -> None:
-    """For nodes that take whatever they are given."""
+    """This is for nodes that accept whatever they are given."""
     node = Node(
         "node",
         context=context,
@@ -129,7 +129,7 @@ async def test_overrides_can_declare_parameters_by_themselves(context: Context) 
 
 
 async def test_callbacks_of_parameters_may_reject_a_change(node: Node) -> None:
-    """With rclpy's names."""
+    """The methods have rclpy's names."""
     node.declare_parameter("speed", 1.0)
     node.add_on_set_parameters_callback(
         lambda parameters: SetParametersResult(successful=False, reason="too fast")
@@ -140,7 +140,7 @@ async def test_callbacks_of_parameters_may_reject_a_change(node: Node) -> None:
 
 
 async def test_profiles_can_be_overridden_by_parameters(context: Context) -> None:
-    """Where the endpoint allows it."""
+    """The endpoint has to allow it."""
     from aionode.parameter import QoSOverridingOptions
 
     node = Node(
@@ -157,7 +157,7 @@ async def test_profiles_can_be_overridden_by_parameters(context: Context) -> Non
 
 
 async def test_names_are_remapped_by_arguments(context: Context) -> None:
-    """Node, namespace, topics and services; the node's own rules before the shared ones."""
+    """Nodes, namespaces, topics and services; the node's own rules precede shared ones."""
     from aionode.arguments import parse_arguments
 
     context.arguments = parse_arguments(
@@ -176,7 +176,7 @@ async def test_names_are_remapped_by_arguments(context: Context) -> None:
 
 
 async def test_unknown_arguments_are_refused_with_the_nearest(context: Context) -> None:
-    """A typing mistake must not silently do nothing."""
+    """A typo must not be ignored silently."""
     with pytest.raises(UnknownROSArgsError, match="did you mean --remap"):
         Node("node", context=context, cli_args=["--ros-args", "--remp", "a:=b"])
 
@@ -185,7 +185,7 @@ async def test_unknown_arguments_are_refused_with_the_nearest(context: Context) 
 
 
 async def test_what_a_node_logs_is_published(node: Node, manual_clock: Any) -> None:
-    """On /rosout, also for readers that come late, with level, name, place and time."""
+    """It goes to /rosout with level, name, place and time, also for late subscriptions."""
     await manual_clock.advance(1.0)
     node.get_logger().warning("hot")
     reader = node.create_subscription(Log, "/rosout", None, qos_profile_rosout_default)
@@ -197,7 +197,7 @@ async def test_what_a_node_logs_is_published(node: Node, manual_clock: Any) -> N
 
 
 async def test_a_log_from_a_thread_is_published_in_the_loop(node: Node) -> None:
-    """Offloaded callbacks log too, and queues belong to the loop."""
+    """Offloaded callbacks log as well, and queues belong to the loop."""
     reader = node.create_subscription(Log, "/rosout")
     await settle()
     await asyncio.to_thread(lambda: node.get_logger().info(threading.current_thread().name))
@@ -205,14 +205,14 @@ async def test_a_log_from_a_thread_is_published_in_the_loop(node: Node) -> None:
 
 
 async def test_a_text_that_cannot_be_encoded_is_logged_all_the_same(node: Node) -> None:
-    """Logging never fails because of what is logged."""
+    """Logging never fails because of the logged text."""
     reader = node.create_subscription(Log, "/rosout")
     node.get_logger().info("bad \udcff byte")
     assert (await reader.receive()).msg == "bad ? byte"
 
 
 async def test_the_log_topic_can_be_left_out(context: Context) -> None:
-    """By the constructor, or by an argument."""
+    """The constructor or an argument does that."""
     quiet = Node("quiet", context=context, enable_rosout=False)
     args = ["--ros-args", "--disable-rosout-logs"]
     silent = Node("silent", context=context, cli_args=args)
@@ -223,7 +223,7 @@ async def test_the_log_topic_can_be_left_out(context: Context) -> None:
 async def test_levels_of_loggers_can_be_set_by_others(
     context: Context, node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """With the two services that rclpy offers on request."""
+    """These are the two services that rclpy offers on request."""
     async with Node("loud", context=context, enable_logger_service=True) as loud:
         get = node.create_client(GetLoggerLevels, "/loud/get_logger_levels")
         put = node.create_client(SetLoggerLevels, "/loud/set_logger_levels")
@@ -241,7 +241,7 @@ async def test_levels_of_loggers_can_be_set_by_others(
 
 
 async def test_a_node_describes_the_types_it_uses(node: Node) -> None:
-    """With a hash that fits, and the text that defines them."""
+    """The description has a matching hash, and the text of the definition."""
     node.create_publisher(Twist, "cmd_vel", 10)
     client = node.create_client(GetTypeDescription, "/node/get_type_description")
     response = await client.call(
@@ -270,7 +270,7 @@ async def test_a_node_describes_the_types_it_uses(node: Node) -> None:
 async def test_a_type_that_is_not_used_is_not_described(
     node: Node, name: str, wanted_hash: str, reason: str
 ) -> None:
-    """And the answer says why."""
+    """The answer says why."""
     node.create_service(AddTwoInts, "add", lambda request: AddTwoInts.Response())
     client = node.create_client(GetTypeDescription, "/node/get_type_description")
     response = await client.call(GetTypeDescription.Request(type_name=name, type_hash=wanted_hash))

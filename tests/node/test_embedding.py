@@ -1,4 +1,4 @@
-"""The contract for programs that build on aionode: their own loop, clock, and transport."""
+"""Tests of the contract for programs that build on aionode: own loop, clock and transport."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class CountingTransport(Transport):
 
 
 def test_a_program_that_is_not_async_runs_nodes_in_a_background_loop() -> None:
-    """A blocking API on top of aionode needs public names only."""
+    """A blocking API on top of aionode needs only public names."""
     texts: list[str] = []
     heard = threading.Event()
 
@@ -115,7 +115,7 @@ def test_a_program_that_is_not_async_runs_nodes_in_a_background_loop() -> None:
 
 
 async def test_a_transport_of_a_program_carries_its_messages() -> None:
-    """The contract is `aionode.transport.base`; a context takes any object that meets it."""
+    """The contract is `aionode.transport.base`; a context takes any object that fulfils it."""
     transport = CountingTransport(LocalTransport())
     context = Context(transport=transport)
     async with Node("node", context=context, enable_rosout=False) as node:

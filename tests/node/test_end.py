@@ -1,4 +1,4 @@
-"""The end of a node: callbacks clean up, with everything they need, and then it is really gone."""
+"""Tests of how a node ends: callbacks clean up with everything they need before it is gone."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ from tests.support.living import living
 
 
 def heard_in(node: Node) -> list[float]:
-    """Return the speeds that `node` hears, as they come."""
+    """Return the speeds that `node` receives, in order."""
     heard: list[float] = []
     node.create_subscription(Float64, "speed", lambda msg: heard.append(msg.data))
     return heard
 
 
 def by_destroy(node: Node) -> None:
-    """End the node by its own method."""
+    """End the node with its own method."""
     node.destroy_node()
 
 
 def by_shutdown(node: Node) -> None:
-    """End it with its context."""
+    """End the node with its context."""
     node.context.shutdown()
 
 
 @pytest.mark.parametrize("kind", ["timer", "subscription", "service", "goal", "sync"])
 async def test_a_callback_can_publish_in_finally(context: Context, node: Node, kind: str) -> None:
-    """A handler that drives stops the robot there; the last command must not be its speed."""
+    """A handler that drives stops the robot there, so that its last command is not its speed."""
     heard = heard_in(node)
     robot = Node("robot", context=context)
     speed = robot.create_publisher(Float64, "speed", 10)
@@ -95,7 +95,7 @@ async def test_a_callback_can_publish_in_finally(context: Context, node: Node, k
 async def test_a_destroyed_node_refuses_at_once_and_leaves_when_callbacks_have_ended(
     end: Callable[[Node], None],
 ) -> None:
-    """No new work begins, and what runs has what it needs."""
+    """No new work begins, and running callbacks keep what they need."""
     async with local_context() as context, Node("robot", context=context) as robot:
         may_end = asyncio.Event()
         speed = robot.create_publisher(Float64, "speed", 10)
@@ -124,7 +124,7 @@ async def test_a_destroyed_node_refuses_at_once_and_leaves_when_callbacks_have_e
 
 
 async def test_a_service_can_be_called_in_finally(context: Context, node: Node) -> None:
-    """Such as one that switches the motors off."""
+    """An example is a service that switches the motors off."""
     asked: list[int] = []
 
     def switch(request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -150,7 +150,7 @@ async def test_a_service_can_be_called_in_finally(context: Context, node: Node) 
 async def test_a_failing_callback_does_not_break_off_what_others_do_in_finally(
     context: Context, node: Node
 ) -> None:
-    """The node ends for one, and the others clean up."""
+    """The node ends because of one, and the others clean up."""
     heard = heard_in(node)
     robot = Node("robot", context=context)
     speed = robot.create_publisher(Float64, "speed", 10)
@@ -177,7 +177,7 @@ async def test_a_failing_callback_does_not_break_off_what_others_do_in_finally(
 
 
 async def test_an_impatient_caller_does_not_break_off_the_end(context: Context, node: Node) -> None:
-    """Scopes of anyio cancel in every turn of the loop."""
+    """Scopes of anyio cancel in every iteration of the loop."""
     heard = heard_in(node)
     with anyio.CancelScope() as scope:
         async with Node("robot", context=context) as robot:
@@ -200,7 +200,7 @@ async def test_an_impatient_caller_does_not_break_off_the_end(context: Context, 
 
 
 async def test_a_context_is_closed_although_its_last_node_is_cancelled_again() -> None:
-    """Or its connections would stay open."""
+    """Otherwise its connections would stay open."""
     closed: list[bool] = []
 
     class Slow(LocalTransport):
@@ -220,7 +220,7 @@ async def test_a_context_is_closed_although_its_last_node_is_cancelled_again() -
 async def test_callbacks_that_do_not_end_are_named_and_given_up(
     context: Context, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A program that hangs at its end must say why, and must not hang for ever."""
+    """A program that hangs at its end must say why, and must not hang forever."""
     monkeypatch.setattr(shutdown, "NOTICE_S", 0.01)
     monkeypatch.setattr(shutdown, "CALLBACKS_S", 0.05)
 
@@ -244,7 +244,7 @@ async def test_callbacks_that_do_not_end_are_named_and_given_up(
 
 
 async def test_what_runs_to_the_end_gives_its_result_and_its_error() -> None:
-    """As if it were awaited directly."""
+    """It behaves as if it were awaited directly."""
 
     async def fail() -> None:
         raise LookupError("lost")
@@ -258,7 +258,7 @@ async def test_what_runs_to_the_end_gives_its_result_and_its_error() -> None:
 
 
 async def test_an_error_of_a_cleanup_comes_before_the_cancellation(context: Context) -> None:
-    """A TaskGroup of Python 3.13 cancels its task once more when it raises: the error was lost."""
+    """In Python 3.13 a TaskGroup cancels its task again when it raises: the error was lost."""
     begun = asyncio.Event()
 
     async def fail_at_the_end() -> None:
@@ -283,14 +283,14 @@ async def test_an_error_of_a_cleanup_comes_before_the_cancellation(context: Cont
 
 
 class Refusing(LocalTransport):
-    """A transport that refuses one kind of thing."""
+    """Refuses to create one kind of object."""
 
     def __init__(self, refused: str) -> None:
         super().__init__()
         self.refused = refused
 
     def create_node(self, node: NodeInfo) -> Registration:
-        """Refuse, or not."""
+        """Refuse, or create it."""
         if self.refused == "node":
             raise ConnectionError("no more nodes")
         return super().create_node(node)
@@ -304,7 +304,7 @@ class Refusing(LocalTransport):
 
 @pytest.mark.parametrize("refused", ["node", "writer"])
 async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
-    """The cause comes out, and the context can be used and left."""
+    """The cause is raised, and the context can be used and closed."""
     writers, readers = living(LocalWriter), living(LocalReader)
     first = LocalTransport()
     transport = Refusing(refused)
@@ -322,7 +322,7 @@ async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
 
 
 def test_entities_end_by_destroy_alone() -> None:
-    """A second method that ends half of one would be found by completion, and used."""
+    """Completion would offer a second method that ends half of one, and people would use it."""
     kinds = [
         aionode.Publisher,
         aionode.Subscription,
@@ -341,7 +341,7 @@ def test_entities_end_by_destroy_alone() -> None:
 async def test_a_node_that_fails_in_a_task_of_its_own_logs_one_error(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """In a notebook nobody awaits the task before its last cell."""
+    """In a notebook, nobody awaits the task before the last cell."""
 
     def tick() -> None:
         raise ValueError("no map")
@@ -364,7 +364,7 @@ async def test_a_node_that_fails_in_a_task_of_its_own_logs_one_error(
 async def test_a_node_that_fails_in_the_task_of_its_caller_logs_nothing(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The caller has the exception."""
+    """The caller gets the exception."""
     robot = Node("robot", context=node.context)
     robot.create_timer(0.0, lambda: 1 / 0)
 

@@ -1,4 +1,4 @@
-"""`Node.find_type`, and the types of the program by their names."""
+"""Tests of `Node.find_type`, and of finding the program's types by name."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from aionode.message import ActionType, Message, ServiceType, float64
 
 
 class Foreign(Message, typename="foreign/msg/Foreign", by_name=False):
-    """A class that is not found by name, as if another process had it."""
+    """A class that cannot be found by name, as if another process had it."""
 
     text: str = ""
 
 
 def test_a_class_of_the_program_is_found_by_its_name() -> None:
-    """A program that knows a name, from a file or a request, needs no import of its own."""
+    """A program that gets a name from a file or a request needs no import of its own."""
 
     class Words(Message, typename="own_msgs/msg/Words"):
         text: str = ""
@@ -67,7 +67,7 @@ def test_a_class_of_the_program_is_found_by_its_name() -> None:
 
 
 def test_a_class_that_the_program_has_dropped_is_not_kept_for_its_name() -> None:
-    """A program that makes classes again and again keeps its memory."""
+    """The memory of a program that keeps creating classes does not grow."""
 
     class Words(Message, typename="dropped_msgs/msg/Words"):
         text: str = ""
@@ -82,14 +82,14 @@ def test_a_class_that_the_program_has_dropped_is_not_kept_for_its_name() -> None
 async def test_a_known_type_is_found_without_a_node_that_uses_it(
     node_factory: Callable[..., Node],
 ) -> None:
-    """A program may look for its types before it knows of any peer."""
+    """A program may look for its types before it knows any peer."""
     assert await node_factory("asker").find_type("std_msgs/msg/String") is String
 
 
 async def test_a_type_is_learnt_from_the_node_that_uses_it(
     node_factory: Callable[..., Node],
 ) -> None:
-    """A bag, a bridge or a browser subscribes to whatever there is."""
+    """A bag, a bridge or a browser subscribes to whatever exists."""
     node_factory("talker").create_publisher(Foreign, "/foreign", 1)
 
     found = await node_factory("asker").find_type("foreign/msg/Foreign")
@@ -111,7 +111,7 @@ async def test_a_type_is_learnt_from_the_node_that_uses_it(
     ],
 )
 def test_the_parts_of_services_and_actions_have_names(name: str, found: Any) -> None:
-    """The graph shows them: of an action there is nothing else in it."""
+    """The graph shows them; of an action it shows nothing else."""
     assert get_interface(f"example_interfaces/{name}") is found
 
 
@@ -119,13 +119,13 @@ def test_the_parts_of_services_and_actions_have_names(name: str, found: Any) -> 
     "name", ["srv/AddTwoInts_Goal", "srv/None_Event", "msg/String_Event", "_Goal"]
 )
 def test_a_part_that_there_is_not_has_no_name(name: str) -> None:
-    """A service has no goal, and a message no parts."""
+    """A service has no goal, and a message has no parts."""
     with pytest.raises(InterfaceNotFoundError):
         get_interface(f"example_interfaces/{name}")
 
 
 class Walk(ActionType, typename="foreign/action/Walk", by_name=False):
-    """An action that is not found by name, as if another process had it."""
+    """An action that cannot be found by name, as if another process had it."""
 
     class Goal(Message):
         """How far."""
@@ -161,13 +161,13 @@ async def test_the_parts_of_an_action_are_learnt_from_the_node_that_has_it(
 
 
 async def test_a_type_that_nobody_has_is_an_error(node_factory: Callable[..., Node]) -> None:
-    """Not a wait: the type may never come."""
+    """It does not wait: the type may never appear."""
     with pytest.raises(InterfaceNotFoundError, match="no such interface"):
         await node_factory("asker").find_type("nobody_msgs/msg/Nothing")
 
 
 async def lying_node(node_factory: Callable[..., Node], describe: Callable[..., Any]) -> None:
-    """Run a node that uses `Foreign`, and answers requests for its description as it likes."""
+    """Run a node that uses `Foreign`, and answers requests for its description arbitrarily."""
     from aionode.parameter import Parameter
 
     liar = node_factory(
@@ -180,7 +180,7 @@ async def lying_node(node_factory: Callable[..., Node], describe: Callable[..., 
 async def test_a_description_with_another_hash_is_not_believed(
     node_factory: Callable[..., Node],
 ) -> None:
-    """Messages of a type are read as the type of which the graph shows the hash, or not at all."""
+    """Messages are decoded as the type whose hash the graph shows, or not at all."""
 
     def describe(_: Any, response: Any) -> Any:
         from aionode.engine.wire.typehash import description_message
@@ -214,7 +214,7 @@ async def test_a_description_beyond_the_limits_is_named(
 
 
 async def test_only_some_nodes_are_asked(node_factory: Callable[..., Node]) -> None:
-    """Nodes that do not answer must not add up to a wait without end."""
+    """Nodes that do not answer must not add up to an endless wait."""
     asked = 0
 
     def refuse(_: Any, response: Any) -> Any:
@@ -243,7 +243,7 @@ async def test_only_some_nodes_are_asked(node_factory: Callable[..., Node]) -> N
 async def test_a_type_is_found_by_its_kind_and_another_kind_is_refused(
     node_factory: Callable[..., Node],
 ) -> None:
-    """So that type checkers know what code over any service gets."""
+    """So type checkers know what code for any service gets."""
     node = node_factory("asking")
 
     assert await node.find_message("std_msgs/msg/String") is String

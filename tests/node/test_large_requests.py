@@ -1,4 +1,4 @@
-"""Every built-in service, asked for as much as fits into a request: what it answers is bounded."""
+"""Tests that every built-in service bounds its answer, even for the largest request."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ REQUESTS: list[tuple[Any, str, Any, int]] = [
 
 
 async def test_every_built_in_service_bounds_its_answer(context: Context) -> None:
-    """A small request must not make a large answer, nor have the node keep any amount."""
+    """A small request must neither get a large answer nor fill the node's memory."""
     async with (
         LifecycleNode(
             "robot",
@@ -105,7 +105,7 @@ async def test_every_built_in_service_bounds_its_answer(context: Context) -> Non
 
 
 async def test_others_cannot_fill_the_parameters_of_a_node(context: Context) -> None:
-    """Where undeclared ones are allowed, each request could add some megabytes."""
+    """Where undeclared parameters are allowed, each request could add some megabytes."""
     async with (
         Node("robot", context=context, allow_undeclared_parameters=True) as robot,
         Node("peer", context=context) as peer,
@@ -127,7 +127,7 @@ async def test_others_cannot_fill_the_parameters_of_a_node(context: Context) -> 
 async def test_a_name_that_is_repeated_is_described_once(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """To copy a description a thousand times would stop the loop."""
+    """Copying a description a thousand times would block the loop."""
     node.declare_parameter("a", 1)
     asked: list[str] = []
     describe = parameter_store.ParameterStore.describe_parameter
@@ -145,7 +145,7 @@ async def test_a_name_that_is_repeated_is_described_once(
 
 
 def test_others_have_few_loggers_made(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A logger stays for good, and each part of its name is one."""
+    """A logger is never removed, and each part of its name is a logger."""
     known = logging.Logger.manager.loggerDict
     before = len(known)
     monkeypatch.setattr(loggers, "MOST_LOGGERS", before + 5)

@@ -1,4 +1,4 @@
-"""The life of a node: what it starts, what it ends, and what comes out of it."""
+"""Tests of the life of a node: what it starts, what it ends, and what it raises."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def failing(msg: String) -> None:
-    """Fail with what was heard."""
+    """Raise an error with the received message."""
     raise ValueError(f"cannot use {msg.data}")
 
 
@@ -31,7 +31,7 @@ def failing(msg: String) -> None:
 
 
 async def test_run_returns_after_destroy_node(context: Context) -> None:
-    """The main coroutine of a program ends when the node is told to end."""
+    """A program's main coroutine ends when its node is destroyed."""
     node = Node("node", context=context)
     asyncio.get_running_loop().call_soon(node.destroy_node)
 
@@ -58,7 +58,7 @@ async def test_a_callback_may_destroy_its_own_node(context: Context) -> None:
 
 
 async def test_no_callback_is_called_after_a_sync_one_destroyed_the_node(context: Context) -> None:
-    """Messages that wait in the queue are not handed to a destroyed node."""
+    """Queued messages are not delivered to a destroyed node."""
     node = Node("node", context=context)
     heard: list[str] = []
 
@@ -77,7 +77,7 @@ async def test_no_callback_is_called_after_a_sync_one_destroyed_the_node(context
 
 
 async def test_entities_made_before_the_node_runs_work_once_it_does(context: Context) -> None:
-    """A constructor makes them, and it may run long before the loop does."""
+    """A constructor creates them, possibly long before the loop runs."""
     node = Node("node", context=context)
     heard: list[str] = []
     node.create_subscription(String, "words", lambda msg: heard.append(msg.data))
@@ -93,7 +93,7 @@ async def test_entities_made_before_the_node_runs_work_once_it_does(context: Con
 
 
 def test_nodes_and_entities_can_be_made_without_a_loop() -> None:
-    """So that they can be module-level objects, or made by a synchronous constructor."""
+    """They can be module-level objects, or be created by a synchronous constructor."""
     context = local_context()
     node = Node("node", context=context)
     node.create_publisher(String, "words", 10)
@@ -137,7 +137,7 @@ async def test_a_destroyed_node_cannot_run(context: Context) -> None:
 
 
 async def test_destroying_twice_is_allowed(node: Node) -> None:
-    """Cleaning up never has to ask what was cleaned up already."""
+    """Cleanup code need not know what was already cleaned up."""
     publisher = node.create_publisher(String, "words", 10)
     publisher.destroy()
     publisher.destroy()
@@ -165,7 +165,7 @@ def test_a_destroyed_node_refuses_new_entities(create: Callable[[Node], object])
 
 
 async def test_leaving_a_node_cancels_callbacks_and_waits_for_them(context: Context) -> None:
-    """Nothing of a node runs on after its block."""
+    """Nothing of a node runs after its block."""
     events: list[str] = []
 
     async def slow(_: String) -> None:
@@ -213,7 +213,7 @@ async def test_the_clock_of_a_destroyed_node_is_destroyed(node: Node) -> None:
 async def test_an_exception_of_a_callback_ends_the_node(
     context: Context, *, concurrent: bool | int
 ) -> None:
-    """It comes out as from a TaskGroup, however the callbacks are run."""
+    """It is raised as from a TaskGroup, however callbacks are run."""
     node = Node("node", context=context)
     node.create_subscription(String, "words", failing, concurrent=concurrent)
     node.create_publisher(String, "words", 10).publish(String(data="x"))
@@ -225,7 +225,7 @@ async def test_an_exception_of_a_callback_ends_the_node(
 
 
 async def test_an_exception_of_the_body_comes_out_as_it_is(context: Context) -> None:
-    """So that ``except LookupError`` around the node catches it; the node is destroyed."""
+    """So ``except LookupError`` around the node catches it; the node is destroyed."""
     node = Node("node", context=context)
 
     with pytest.raises(LookupError, match="body"):
@@ -237,7 +237,7 @@ async def test_an_exception_of_the_body_comes_out_as_it_is(context: Context) -> 
 
 
 async def test_an_error_of_a_service_can_be_caught_around_the_node(context: Context) -> None:
-    """As in the README: a function that makes a node, calls, and returns the answer."""
+    """As in the README, a function creates a node, calls, and returns the answer."""
 
     def fail(_request: AddTwoInts.Request) -> AddTwoInts.Response:
         raise ValueError("cannot add")
@@ -273,7 +273,7 @@ async def test_exceptions_of_body_and_callback_come_in_one_group(context: Contex
 
 
 async def test_a_group_that_the_body_raised_comes_out_as_it_is(context: Context) -> None:
-    """Such as that of a TaskGroup inside the node."""
+    """A TaskGroup inside the node raises one, for example."""
     group = ExceptionGroup("own", [LookupError("body")])
 
     with pytest.raises(ExceptionGroup) as caught:
@@ -284,7 +284,7 @@ async def test_a_group_that_the_body_raised_comes_out_as_it_is(context: Context)
 
 
 async def test_a_failing_callback_interrupts_the_body(context: Context) -> None:
-    """The body may wait for something that will never come now."""
+    """The body may be waiting for something that can never come now."""
     node = Node("node", context=context)
     node.create_subscription(String, "words", failing)
     node.create_publisher(String, "words", 10).publish(String(data="x"))
@@ -296,7 +296,7 @@ async def test_a_failing_callback_interrupts_the_body(context: Context) -> None:
 
 
 async def test_a_failing_node_leaves_others_alone(context: Context) -> None:
-    """Nodes of one context fail one by one."""
+    """Each node of a context fails by itself."""
     async with Node("healthy", context=context) as healthy:
         node = Node("node", context=context)
         node.create_timer(0.0, lambda: 1 / 0)
@@ -323,7 +323,7 @@ async def test_shutting_a_context_down_ends_its_nodes() -> None:
 
 
 async def test_leaving_a_context_waits_for_its_nodes() -> None:
-    """A node that runs in a task of its own has ended when the context is left."""
+    """A node that runs in its own task has ended when the context is left."""
     async with local_context() as context:
         node = Node("node", context=context)
         task = asyncio.get_running_loop().create_task(node.run())
@@ -333,7 +333,7 @@ async def test_leaving_a_context_waits_for_its_nodes() -> None:
 
 
 def test_the_default_context_is_made_anew_after_shutdown(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A program may begin again, as after rclpy.shutdown and rclpy.init."""
+    """A program may start over, as after rclpy.shutdown and rclpy.init."""
     monkeypatch.setattr(Context, "_default", local_context())
     first = Context.default()
     assert Context.default() is first
@@ -342,7 +342,7 @@ def test_the_default_context_is_made_anew_after_shutdown(monkeypatch: pytest.Mon
 
 
 def test_an_unknown_transport_is_refused() -> None:
-    """With the words that fit."""
+    """The error lists the valid ones."""
     words = 'transport=\'dds\' is unknown; use "zenoh", "rcl" or "local"'
     with pytest.raises(ValueError, match=words):
         Context(transport="dds")
@@ -352,7 +352,7 @@ def test_an_unknown_transport_is_refused() -> None:
 
 
 async def test_a_node_knows_its_names(context: Context) -> None:
-    """With rclpy's methods."""
+    """The methods are rclpy's."""
     node = Node("arm", namespace="/robot1", context=context)
     assert node.get_name() == "arm"
     assert node.get_namespace() == "/robot1"
@@ -363,7 +363,7 @@ async def test_a_node_knows_its_names(context: Context) -> None:
 
 
 async def test_hidden_names_can_be_left_out(context: Context) -> None:
-    """Those of actions and tools; `ros2 topic list` shows none of them either."""
+    """Names of actions and tools are hidden; `ros2 topic list` omits them, too."""
     async with Node("arm", context=context) as node:
         node.create_publisher(String, "/words", 10)
         node.create_publisher(String, "/_words", 10)
@@ -381,7 +381,7 @@ async def test_hidden_names_can_be_left_out(context: Context) -> None:
 
 
 async def test_the_graph_shows_nodes_topics_and_services(context: Context) -> None:
-    """What `aionode node list` and `topic list` are made of."""
+    """`aionode node list` and `topic list` are made from it."""
     async with Node("arm", namespace="/robot1", context=context) as node:
         node.create_publisher(String, "/words", 10)
         node.create_subscription(String, "/words", print)
@@ -400,7 +400,7 @@ async def test_the_graph_shows_nodes_topics_and_services(context: Context) -> No
 
 
 async def test_a_service_with_clients_only_is_among_the_services(context: Context) -> None:
-    """As in ROS 2, on each middleware; how many servers there are, `count_services` says."""
+    """ROS 2 does the same on each middleware; `count_services` returns the number of servers."""
     async with Node("arm", context=context) as node:
         node.create_client(AddTwoInts, "/add")
 
@@ -410,7 +410,7 @@ async def test_a_service_with_clients_only_is_among_the_services(context: Contex
 
 
 async def test_asking_about_an_unknown_node_is_an_error(node: Node) -> None:
-    """An empty list would say that the node exists and does nothing."""
+    """An empty list would mean that the node exists and does nothing."""
     with pytest.raises(NodeNameNonExistentError, match="/ghost: no such node"):
         node.get_publisher_names_and_types_by_node("ghost", "/")
 
@@ -418,7 +418,7 @@ async def test_asking_about_an_unknown_node_is_an_error(node: Node) -> None:
 async def test_wait_for_node_returns_when_the_node_appears(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """It is woken by the graph and does not poll."""
+    """The graph wakes it; it does not poll."""
     async with asyncio.TaskGroup() as tasks:
         waiting = tasks.create_task(node.wait_for_node("late"))
         await settle()
@@ -427,7 +427,7 @@ async def test_wait_for_node_returns_when_the_node_appears(
 
 
 async def test_the_graph_can_be_watched(node: Node) -> None:
-    """`changed` is done at the next change, whatever it is."""
+    """`changed` is done at the next change of any kind."""
     change = node.graph.changed()
     assert not change.done()
     node.create_publisher(Int32, "numbers", 10)
@@ -435,7 +435,7 @@ async def test_the_graph_can_be_watched(node: Node) -> None:
 
 
 async def test_what_is_destroyed_leaves_the_graph(node: Node) -> None:
-    """At once, in the same process."""
+    """Within one process it does so at once."""
     publisher = node.create_publisher(String, "/words", 10)
     publisher.destroy()
     assert node.count_publishers("/words") == 0
@@ -458,7 +458,7 @@ async def test_cancelled_waits_leave_nothing_in_the_graph(node: Node) -> None:
     ("module", "loaded"), [("std_msgs.msg.String", False), ("sensor_msgs.msg.JointState", True)]
 )
 def test_numpy_is_there_before_a_callback_needs_it(module: str, *, loaded: bool) -> None:
-    """Importing it within a callback would block the loop; a node without arrays goes without."""
+    """Importing it within a callback would block the loop; a node without arrays does without."""
     package, _, name = module.rpartition(".")
     program = (
         "import sys\n"
@@ -474,7 +474,7 @@ def test_numpy_is_there_before_a_callback_needs_it(module: str, *, loaded: bool)
 
 
 def test_a_node_whose_own_constructor_fails_leaves_its_context() -> None:
-    """A supervisor makes the next one: the failed ones must not pile up in the graph."""
+    """A supervisor creates the next one: failed ones must not accumulate in the graph."""
 
     class Robot(Node):
         def __init__(self, context: Context) -> None:
@@ -511,7 +511,7 @@ async def test_a_callback_group_as_third_argument_of_create_timer_is_reported(
 
 
 def test_a_clock_that_is_none_is_refused() -> None:
-    """With what to give instead."""
+    """The error says what to pass instead."""
     node = Node("node", context=local_context())
 
     with pytest.raises(TypeError, match=r"create_timer: clock is 'steady'; give a clock such as"):

@@ -1,4 +1,4 @@
-"""The names that a program sees on a node and its context: the documented ones, and no others."""
+"""Tests that a program sees only the documented names of a node and its context."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def public_names(subject: object) -> list[str]:
     ids=lambda value: "" if isinstance(value, str) else type(value).__name__,
 )
 def test_a_program_sees_the_documented_names_only(subject: object, documented: str) -> None:
-    """What other parts of aionode call begins with an underscore, so completion leaves it out."""
+    """Names for other parts of aionode begin with an underscore, so completion omits them."""
     assert public_names(subject) == sorted(documented.split())
 
 

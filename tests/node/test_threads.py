@@ -1,4 +1,4 @@
-"""Nodes and entities that are created and destroyed outside the thread of the event loop."""
+"""Tests of nodes and entities that are created and destroyed outside the event loop's thread."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ CREATORS: dict[str, Callable[[Node], Any]] = {
 async def test_every_entity_can_be_created_and_destroyed_in_another_thread(
     node: Node, kind: str
 ) -> None:
-    """The loop's thread does it, so asyncio's debug mode finds nothing to complain about."""
+    """The loop's thread does the work, so asyncio's debug mode finds nothing to report."""
     before = repr(node)  # with the number of entities
 
     entity = await asyncio.to_thread(CREATORS[kind], node)
@@ -52,7 +52,7 @@ async def test_every_entity_can_be_created_and_destroyed_in_another_thread(
 
 
 async def test_an_entity_created_in_another_thread_works(node: Node) -> None:
-    """Its callback is called in the loop's thread, as that of any other."""
+    """Its callback is called in the loop's thread, like any other."""
     heard = []
 
     def create() -> None:
@@ -68,7 +68,7 @@ async def test_an_entity_created_in_another_thread_works(node: Node) -> None:
 
 
 async def test_destroy_methods_of_the_node_work_in_another_thread(node: Node) -> None:
-    """As `Entity.destroy`, which they call."""
+    """They call `Entity.destroy`."""
     publisher = node.create_publisher(String, "/chatter", 10)
 
     assert await asyncio.to_thread(node.destroy_publisher, publisher)
@@ -77,7 +77,7 @@ async def test_destroy_methods_of_the_node_work_in_another_thread(node: Node) ->
 
 
 async def test_errors_of_a_creation_come_out_in_the_thread_that_asked(node: Node) -> None:
-    """The loop is not disturbed by them."""
+    """The loop is not affected by them."""
     with pytest.raises(InvalidTopicNameException):
         await asyncio.to_thread(node.create_publisher, String, "not a name", 10)
     node.destroy_node()

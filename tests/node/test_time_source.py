@@ -1,4 +1,4 @@
-"""Simulated time: nodes that follow /clock."""
+"""Tests of simulated time: nodes that follow /clock."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 async def test_simulated_time_follows_the_clock_topic(context: Context, node: Node) -> None:
-    """It stands at 0 until the first tick, and the timers wait for it."""
+    """It stands at 0 until the first tick, and timers wait for it."""
     ticks: list[int] = []
     options = {"parameter_overrides": [Parameter("use_sim_time", value=True)]}
     async with Node("sim", context=context, **options) as sim:  # type: ignore[arg-type]  # one of many options
@@ -37,7 +37,7 @@ async def test_simulated_time_follows_the_clock_topic(context: Context, node: No
 
 
 async def test_simulated_time_can_be_switched_on_and_off(node: Node) -> None:
-    """Pending sleeps are told that the source of time has changed."""
+    """Pending sleeps get an error, since the source of time has changed."""
     sleeping = asyncio.get_running_loop().create_task(node.get_clock().sleep(999))
     await settle()
     node.set_parameters([Parameter("use_sim_time", value=True)])
@@ -52,7 +52,7 @@ async def test_simulated_time_can_be_switched_on_and_off(node: Node) -> None:
 async def test_a_node_that_was_given_simulated_time_while_it_ran_ends_at_once(
     context: Context, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Its end waits for callbacks; the one that follows /clock goes on until they have ended."""
+    """Its end waits for callbacks; the one that follows /clock continues until they have ended."""
     async with Node("sim", context=context) as sim:
         sim.set_parameters([Parameter("use_sim_time", value=True)])
         await settle()
@@ -63,7 +63,7 @@ async def test_a_node_that_was_given_simulated_time_while_it_ran_ends_at_once(
 async def test_a_callback_sleeps_in_finally_on_simulated_time_that_was_set_while_it_ran(
     context: Context, node: Node
 ) -> None:
-    """A robot may need a second to come to rest, in the time of its simulation."""
+    """A robot may need a second of simulated time to come to rest."""
     slept: list[int] = []
     source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=1))
 
@@ -88,7 +88,7 @@ async def test_a_callback_sleeps_in_finally_on_simulated_time_that_was_set_while
 
 
 async def test_use_sim_time_must_be_true_or_false(node: Node) -> None:
-    """A typing mistake must not freeze a robot."""
+    """A typo must not freeze a robot."""
     (result,) = node.set_parameters([Parameter("use_sim_time", value="yes")])
     assert not result.successful
 
@@ -102,7 +102,7 @@ async def test_a_clock_message_that_holds_no_time_is_counted(
     wrong: TimeMsg,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Any node can publish on /clock; an invalid message must not end the nodes that follow it."""
+    """Any node can publish on /clock; an invalid message must not end nodes that follow it."""
     sim = node_factory("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
     source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=10))
     for clock in (TimeMsg(sec=1), wrong, wrong, TimeMsg(sec=2)):
@@ -119,7 +119,7 @@ async def test_a_clock_message_that_holds_no_time_is_counted(
 async def test_the_log_says_it_if_nobody_publishes_simulated_time(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """The node would stand still without a word; a simulator may take some seconds to start."""
+    """Otherwise the node would silently stand still; a simulator may need some seconds to start."""
     clock = ManualClock()
     options = {"parameter_overrides": [Parameter("use_sim_time", value=True)]}
     context = Context(transport="local", clock=clock)
@@ -136,7 +136,7 @@ async def test_the_log_says_it_if_nobody_publishes_simulated_time(
 async def test_the_log_names_who_publishes_no_simulated_time(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Such as a simulator that begins paused."""
+    """A simulator that starts paused is an example."""
     clock = ManualClock()
     context = Context(transport="local", clock=clock)
     async with Node("sim", context=context) as sim, Node("gazebo", context=context) as gazebo:
@@ -151,7 +151,7 @@ async def test_the_log_names_who_publishes_no_simulated_time(
 async def test_nothing_is_said_of_simulated_time_that_comes_or_is_not_wanted(
     caplog: pytest.LogCaptureFixture, *, switched_off: bool
 ) -> None:
-    """A first time of 0 is one."""
+    """A first time of 0 counts as one."""
     clock = ManualClock()
     context = Context(transport="local", clock=clock)
     async with Node("sim", context=context) as sim, Node("gazebo", context=context) as gazebo:
