@@ -102,7 +102,11 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
     problems += dict.fromkeys(
         line for each in collected for line in silence_of(node, contract, each, end_ns)
     )
-    if not problems and not len(rows.times):
+    is_idle = any(
+        entry in contract.actions and not topic["messages"]
+        for entry, topic in zip(contract.entries, topics, strict=True)
+    )
+    if not problems and not len(rows.times) and not is_idle:
         problems.append("no picture had everything that is fresh enough; see the ages above")
     if problems:
         problems = floods + problems  # which they may have caused
@@ -184,21 +188,21 @@ def problems_of(
     """Return what does not fit about a topic, with what to do."""
     name = node.resolve_topic_name(entry.topic)
     others = {each.type_name for each in publishers} - {entry.type}
-    is_action = entry in contract.actions
+    is_silent = not topic["messages"] and not topic["invalid"]
     if others:
         return [f"{name}: it is {', '.join(sorted(others))}, and {entry.type} in the contract"]
-    if is_action and not publishers:
+    if entry in contract.actions and is_silent:
         robot = endpoints_of(node, name, EndpointKind.SUBSCRIPTION)
         types = {each.type_name for each in robot}
-        if entry.type in types:
-            return []  # nobody demonstrates, and the robot would listen
-        if types:
+        if types and entry.type not in types:
             return [f"{name}: the robot takes {', '.join(sorted(types))}, and not {entry.type}"]
+        if types or publishers:
+            return []  # nobody demonstrates at the moment
     if not publishers:
         known = {each.name for each in node.graph.endpoints(EndpointKind.PUBLISHER)}
         near = difflib.get_close_matches(name, sorted(known), 1)
         remedy = f"did you mean {near[0]}?" if near else "start its driver"
         return [f"{name}: nobody publishes it; {remedy}"]
-    if not topic["messages"] and not topic["invalid"]:
+    if is_silent:
         return [f"{name}: published, but nothing arrived; is its driver at work?"]
     return []

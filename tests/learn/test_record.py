@@ -39,6 +39,7 @@ class Robot:
         self.joints = self.node.create_publisher(JointState, "/joint_states", 10)
         self.commands = self.node.create_publisher(JointState, "/command", 10)
         self.count = 0
+        self.demonstrates = True
 
     async def step(self, times: int = 1) -> None:
         """Publish everything, at steps of a thirtieth of a second that end now."""
@@ -50,7 +51,8 @@ class Robot:
             state = JointState(name=["joint"], position=[angle(sec)], velocity=[0.0])
             shown = image.from_numpy(picture(sec), "rgb8")
             state.header.stamp = shown.header.stamp = at
-            self.commands.publish(state)
+            if self.demonstrates:
+                self.commands.publish(state)
             self.joints.publish(state)
             self.camera.publish(shown)
             self.count += 1
@@ -343,11 +345,14 @@ def test_an_episode_is_exported_once_its_recorder_was_killed(tmp_path: Path) -> 
 # A running robot
 
 
-async def checked(made: Contract, *, steps: int = 30, length_sec: float = 0.3) -> Any:
+async def checked(
+    made: Contract, *, steps: int = 30, length_sec: float = 0.3, demonstrates: bool = True
+) -> Any:
     """Check a robot that runs with a contract; the check ends when the robot has stepped."""
     clock = ManualClock(Time(nanoseconds=START_NS))
     async with local_context(clock=clock) as context:
         robot = Robot(context)
+        robot.demonstrates = demonstrates
         async with (
             robot.node,
             Node("checker", context=context) as node,
@@ -368,6 +373,13 @@ async def test_a_check_tells_rate_age_and_qos_of_each_topic() -> None:
     assert "/camera0 (observation.images.camera0): 30 messages at 30.0 Hz" in found.text
     assert "/joint_states (observation.state): 30 messages at 30.0 Hz; age p50 0.0" in found.text
     assert "reliable, volatile" in found.text
+
+
+async def test_a_check_does_not_ask_for_commands() -> None:
+    """A page or a gamepad that nobody touches publishes none."""
+    found = await checked(stamped(), demonstrates=False)
+    assert found.problems == []
+    assert "/command (action): no messages" in found.text
 
 
 async def test_a_check_names_what_is_missing_and_what_is_near() -> None:
