@@ -1,4 +1,4 @@
-"""A lidar driver that says on /diagnostics how it is.
+"""A lidar driver that reports its health on /diagnostics.
 
 Run it with ``python examples/diagnostics.py``, and see it with ``aionode topic echo /diagnostics``.
 """
@@ -41,7 +41,7 @@ class Lidar(Node):
         self.scans.publish(message)
 
     async def check_temperature(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Say how warm the device is."""
+        """Report the temperature of the device."""
         celsius = await self.read_temperature()
         if celsius > 60.0:
             stat.summary(DiagnosticStatus.WARN, "too warm")

@@ -1,4 +1,4 @@
-"""The rover's own action type; an ``DriveTo.action`` file with these fields is the same type."""
+"""The rover's own action type; a ``DriveTo.action`` file with these fields is the same type."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The rover learns to drive to the ball: ``python -m aionode.examples.rover.learn VERB``.
 
-``record`` has a script demonstrate it ten times, and leaves `contract.yaml` beside the recordings:
-what the policy sees and commands. `aionode learn export` makes a data set of them. ``train`` fits a
-policy to it by least squares, and ``drive`` lets that policy drive. The rover runs besides. It
-needs ``pip install 'aionode[bag,gateway,lerobot]'``.
+``record`` records ten demonstrations by a script, and writes `contract.yaml`, which says what the
+policy sees and commands, beside them. `aionode learn export` turns them into a data set. ``train``
+fits a policy to it by least squares, and ``drive`` lets that policy drive. The rover has to run
+meanwhile. It needs ``pip install 'aionode[bag,gateway,lerobot]'``.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ MOST_CHUNKS = 200
 """As many last about a minute and a half."""
 
 NEAR = 2_400
-"""As many pixels show the ball half a metre ahead."""
+"""The number of red pixels when the ball is half a metre ahead."""
 
 
 def is_ball(picture: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
@@ -57,7 +57,7 @@ def is_ball(picture: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
 
 
 def look(picture: npt.NDArray[np.uint8]) -> Numbers:
-    """Return what the policy sees: where the ball is in the picture, and how large."""
+    """Return what the policy sees: the position of the ball in the picture, and its size."""
     columns = is_ball(picture).sum(axis=0).reshape(PARTS, -1).sum(axis=1)
     size = columns.sum()
     return np.array([*columns / max(size, 1), min(1.0, size / NEAR), size > 0, 1.0])
@@ -67,7 +67,7 @@ def look(picture: npt.NDArray[np.uint8]) -> Numbers:
 
 
 def script(picture: npt.NDArray[np.uint8]) -> tuple[float, float]:
-    """Return the speed and the turn of one who knows how: turn to the ball, and stop before it."""
+    """Return the speed and turn of an expert: turn towards the ball, and stop in front of it."""
     columns = is_ball(picture).sum(axis=0)
     size = columns.sum()
     if not size:
@@ -77,7 +77,7 @@ def script(picture: npt.NDArray[np.uint8]) -> tuple[float, float]:
 
 
 async def turn_away(node: Node, seed: int) -> None:
-    """Put the rover back, and turn it somewhere."""
+    """Put the rover back, and turn it to a random heading."""
     contract = Contract.load(CONTRACT)
     reset = node.create_client(Trigger, "/simulator/reset")
     await reset.wait_for_service()
@@ -108,7 +108,7 @@ async def demonstrate(node: Node, episodes: Episodes, seed: int) -> float:
 
 
 async def record(node: Node) -> None:
-    """Record ten episodes; one in which the camera stalled is a failure, and recorded again."""
+    """Record ten episodes; one in which the camera stalls is a failure, and is recorded again."""
     from aionode.learn import Episodes  # the others need no bags
 
     shutil.copy(CONTRACT, CONTRACT.name)
