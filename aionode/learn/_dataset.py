@@ -336,12 +336,13 @@ def merged_indexes(
 # Checking
 
 
-def check_dataset(out: Path) -> list[str]:
+def check_dataset(out: str | os.PathLike[str]) -> list[str]:
     """Read a data set back, and return what LeRobot's reader would stumble over; nothing is good.
 
     It checks more than that one does: that a video has exactly as many frames as its episode rows,
     without which all later pictures would belong to other rows.
     """
+    out = Path(out)
     try:
         info = json.loads((out / INFO).read_text())
         rows = pq.read_table(out / "data")
@@ -372,7 +373,8 @@ def check_info(
         if info[f"total_{name}"] != count:
             yield f"{INFO}: total_{name} {info[f'total_{name}']}, but {count} are there"
     pandas = json.loads((tasks.schema.metadata or {}).get(b"pandas", b"{}"))
-    if pandas.get("index_columns") != [INDEX]:
+    index = pandas.get("index_columns", [])  # LeRobot 0.4 has no name for it, and 0.6 ``task``
+    if len(index) != 1 or index[0] not in set(tasks.column_names) - {"task_index"}:
         yield "meta/tasks.parquet: the text of the tasks is not the index of pandas"
     for name, feature in info["features"].items():
         if "/" in name:

@@ -2,8 +2,8 @@
 
 Run with the Python of an environment that has LeRobot, aionode and `lerobot_robot_aionode`. The
 robot and its leader are a node in a thread of this process, or with ``--rclpy`` one of rclpy in
-another process, over DDS. `lerobot-record` records an episode from them, its loader reads the data
-set, and `lerobot-rollout` lets a mock policy drive.
+another process, over DDS. `lerobot-record` records an episode from them, aionode's check and
+LeRobot's loader read the data set, and `lerobot-rollout` lets a mock policy drive.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from aionode import Context, Node
 from aionode.image import from_numpy
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
+from aionode.learn import check_dataset
 
 __all__: list[str] = []
 
@@ -135,6 +136,7 @@ def record(folder: Path, contract: Path) -> None:
     ]
     lerobot_record.main()
     (root,) = folder.glob("swing*")
+    assert (found := check_dataset(root)) == [], found
     data = LeRobotDataset("aionode/swing", root=root, video_backend="pyav")
     errors = []
     for index in range(len(data)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 import re
 import shutil
@@ -14,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pyarrow import parquet
 
 from aionode import image
 from aionode.bag import Record, TopicInfo
@@ -367,6 +369,23 @@ KILLED = textwrap.dedent("""
 
 
 @pytest.mark.processes
+@pytest.mark.parametrize(
+    ("index", "fits"), [("task", True), ("task_index", False), (None, False)], ids=str
+)
+def test_the_tasks_are_an_index_of_any_name(tmp_path: Path, index: str | None, fits: bool) -> None:
+    """LeRobot 0.6 calls it ``task`` itself; its loader gives it that name."""
+    bags = [demonstration(tmp_path / "run", length_sec=1)]
+    export(tmp_path / "out", bags, contract=contract(), task="turn it", jobs=1)
+    path = tmp_path / "out/meta/tasks.parquet"
+    tasks = parquet.read_table(path).rename_columns(["task_index", "task"])
+    pandas = json.dumps({"index_columns": [] if index is None else [index]})
+    parquet.write_table(tasks.replace_schema_metadata({"pandas": pandas}), path)
+    found = check_dataset(str(tmp_path / "out"))
+    assert found == ([] if fits else [
+        "meta/tasks.parquet: the text of the tasks is not the index of pandas"
+    ])  # fmt: skip
+
+
 @pytest.mark.parametrize("place", ["10", "45", "70", "write_dataset", "check_dataset"])
 def test_an_export_that_was_killed_goes_on(tmp_path: Path, place: str) -> None:
     """Wherever it was, also with another codec and other bags than before: they leave nothing."""
