@@ -405,8 +405,8 @@ class Actor:
             policy: Called with the values of an observation, a dict of arrays by feature, and if it
                 takes two arguments also with what is left over of its last chunk, from the time of
                 the observation on. Returns a chunk; see `plan`. A coroutine function is awaited.
-            executor: Where a function is called, such as a ``ProcessPoolExecutor``; by default a
-                thread of its own.
+            executor: Where a function is called, such as a ``ProcessPoolExecutor`` that spawns its
+                process; by default a thread of its own.
 
         Raises:
             PolicyTooSlowError: the policy takes longer than its chunk lasts; nothing was sent.
