@@ -1,7 +1,7 @@
-"""Publish on ``/diagnostics`` how a node and its devices are.
+"""Publish the health of a node and its devices on ``/diagnostics``.
 
-The names and rules are those of ROS 2's package `diagnostic_updater`: an `Updater` calls tasks
-again and again, and publishes the status that each of them fills. ::
+The names and rules are those of ROS 2's package `diagnostic_updater`: an `Updater` calls its tasks
+periodically, and publishes the status that each of them fills. ::
 
     updater = Updater(self)
     updater.setHardwareID("lidar 0042")
@@ -72,13 +72,13 @@ class StatusMethods:
         self.level, self.message = level_and_message(args)
 
     def clearSummary(self) -> None:
-        """Set the level to OK, and the message to nothing."""
+        """Set the level to OK, and the message to an empty text."""
         self.summary(OK, "")
 
     def mergeSummary(self, *args: Any) -> None:
         """Combine another level and message with these: the worse one counts.
 
-        Of two that are OK or two that are not, both messages are kept.
+        If both are OK, or neither is, both messages are kept.
 
         Args:
             args: A level and a message, or a status.
@@ -91,7 +91,7 @@ class StatusMethods:
         self.level = max(level, self.level)
 
     def add(self, key: str, val: Any) -> None:
-        """Add a value by its name; it becomes text."""
+        """Add a named value, converted to text."""
         self.values.append(self._value_class(key=key, value=str(val)))
 
 
@@ -133,7 +133,7 @@ class DiagnosticTask:
         return stat
 
     def use_clock(self, clock: Any) -> None:
-        """Measure by a clock unless there is one; an updater passes that of its node."""
+        """Set the clock unless there is one; an updater passes its node's clock."""
         if self._clock is None:
             self._clock = clock
 
@@ -195,7 +195,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
 
 
 class Heartbeat(DiagnosticTask):
-    """A task that says that the node is alive."""
+    """A task that reports that the node is alive."""
 
     def __init__(self) -> None:
         super().__init__("Heartbeat")
@@ -213,8 +213,8 @@ class FrequencyStatusParam:
     Attributes:
         freq_bound: The lowest and, unless there is none, the highest frequency in hertz, as ``min``
             and ``max``. A change has effect from the next run on.
-        tolerance: By which part of them they may be exceeded.
-        window_size: The runs over which the frequency is the mean.
+        tolerance: The fraction by which they may be exceeded.
+        window_size: The number of runs over which the frequency is averaged.
     """
 
     freq_bound: dict[str, float]
@@ -223,7 +223,7 @@ class FrequencyStatusParam:
 
 
 class FrequencyStatus(DiagnosticTask):
-    """Warns when something happens too rarely or too often; an error is that it does not happen.
+    """Warns if events are too rare or too frequent; no event at all is an error.
 
     Args:
         params: The limits.
@@ -247,18 +247,18 @@ class FrequencyStatus(DiagnosticTask):
             self.clear()
 
     def clear(self) -> None:
-        """Forget what has happened."""
+        """Forget all events."""
         with self._lock:
             self.count = 0
             self._marks = deque([(self._now_ns(), 0)], max(self.params.window_size, 1))
 
     def tick(self) -> None:
-        """Note that it has happened."""
+        """Note an event."""
         with self._lock:
             self.count += 1
 
     def run(self, stat: Any) -> Any:
-        """Judge the frequency since the run that was `window_size` runs ago."""
+        """Check the frequency over the last `window_size` runs."""
         now_ns = self._now_ns()
         with self._lock:
             (start_ns, before), count = self._marks[0], self.count
@@ -295,8 +295,8 @@ class TimeStampStatusParam:
     """The limits of a `TimeStampStatus`.
 
     Attributes:
-        min_acceptable: The least age of a stamp in seconds: negative for one in the future.
-        max_acceptable: The greatest age of a stamp, in seconds.
+        min_acceptable: Minimum age of a stamp in seconds; negative ages are in the future.
+        max_acceptable: Maximum age of a stamp, in seconds.
     """
 
     min_acceptable: float = -1
@@ -304,7 +304,7 @@ class TimeStampStatusParam:
 
 
 class TimeStampStatus(DiagnosticTask):
-    """Judges the ages of stamps since the last run.
+    """Checks the ages of stamps since the last run.
 
     Args:
         params: The limits.
@@ -346,7 +346,7 @@ class TimeStampStatus(DiagnosticTask):
                 self._seen.newest = min(self._seen.newest, age)
 
     def run(self, stat: Any) -> Any:
-        """Judge the ages of the stamps since the last run."""
+        """Check the ages of the stamps since the last run."""
         with self._lock:
             seen, self._seen = self._seen, Ages()
         stat.summary(OK, "Timestamps are reasonable.")
@@ -385,7 +385,7 @@ class Ages:
 
 
 class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
-    """Judges how often a topic is published to.
+    """Checks the rate of a topic.
 
     Args:
         name: The name of the topic.
@@ -405,12 +405,12 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
         self.freq.tick()
 
     def clear_window(self) -> None:
-        """Forget what was published."""
+        """Forget all messages."""
         self.freq.clear()
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """Judges how often a topic is published to, and the ages of its stamps.
+    """Checks the rate of a topic, and the ages of its stamps.
 
     Args:
         name: The name of the topic.
@@ -433,7 +433,7 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
 
 
 class DiagnosedPublisher(TopicDiagnostic):
-    """A publisher of messages with a header, judged as a `TopicDiagnostic`.
+    """A publisher of messages with a header, checked like a `TopicDiagnostic`.
 
     Args:
         pub: The publisher.
@@ -511,7 +511,7 @@ class UpdaterBase:
         self._period, self.timer = float(period), timer
 
     def add(self, *args: Any) -> None:
-        """Add a task, and say that the node starts.
+        """Add a task, and publish that the node is starting.
 
         Args:
             args: A `DiagnosticTask`; or a name and a function that fills a status and returns it.
@@ -526,18 +526,18 @@ class UpdaterBase:
         self._tell([task], OK, "Node starting up")
 
     def removeByName(self, name: str) -> bool:
-        """Remove the first task of a name; return whether there was one."""
+        """Remove the first task with a name; return whether there was one."""
         found = next((task for task in self.tasks if task.name == name), None)
         if found is not None:
             self.tasks.remove(found)
         return found is not None
 
     def setHardwareID(self, hwid: str) -> None:
-        """Set the serial number or name of the device that all statuses are about."""
+        """Set the serial number or name of the device to which all statuses refer."""
         self.hwid = hwid
 
     def broadcast(self, lvl: Any, msg: str) -> None:
-        """Publish one level and message for all tasks, such as before a shutdown."""
+        """Publish the same level and message for all tasks, for example before a shutdown."""
         self._tell(self.tasks, lvl, msg)
 
     def _tell(self, tasks: list[Named], level: Any, message: str) -> None:
@@ -602,12 +602,12 @@ class UpdaterBase:
 
 
 class Updater(UpdaterBase):
-    """Calls tasks again and again, and publishes the status that each of them fills.
+    """Calls its tasks periodically, and publishes the status that each of them fills.
 
-    The parameter ``diagnostic_updater.period`` has precedence over `period`, and may be changed
-    while the node runs. With ``diagnostic_updater.use_fqn`` statuses begin with the full name of
-    the node. A task that raises, or a coroutine that takes longer than a period, has the level
-    ERROR, and the others are published all the same.
+    The parameter ``diagnostic_updater.period`` takes precedence over `period`, and may be changed
+    while the node runs. With ``diagnostic_updater.use_fqn``, statuses begin with the full name of
+    the node. A task that raises, or a coroutine that takes longer than a period, gets the level
+    ERROR; the others are still published.
 
     Args:
         node: The node.

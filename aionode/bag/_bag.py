@@ -54,8 +54,8 @@ class Bag:
         connections: Each topic with each of its types.
         custom_data: Additional metadata from its recorder.
         losses: What its recorder lost, for each topic with losses; None if it does not report any.
-        missing: The messages of each topic that were written, as its metadata say, and that its
-            files no longer have: a file was cut, or removed.
+        missing: How many messages of each topic are counted in its metadata, but no longer in its
+            files, because one was cut or removed.
     """
 
     def __init__(

@@ -121,7 +121,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             self.feedback_message = "sent goal request"
 
     def update(self) -> Status:
-        """Look how the goal fares."""
+        """Check the state of the goal."""
         self.logger.debug(f"{self.qualified_name}.update()")
         if self.send_goal_future is None:
             self.feedback_message = "no goal to send"
@@ -218,7 +218,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
 
 
 class FromConstant(FromBlackboard):
-    """Sends always the same goal.
+    """Always sends the same goal.
 
     Args:
         name: The behaviour's name.

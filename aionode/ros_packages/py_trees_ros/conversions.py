@@ -1,4 +1,4 @@
-"""Between the objects of py_trees and messages."""
+"""Converts between objects of py_trees and messages."""
 
 from __future__ import annotations
 

@@ -12,11 +12,11 @@ __all__ = [
 
 
 class MultipleFoundError(Exception):
-    """Several of what was looked for were found, where one was expected."""
+    """More than one was found where one was expected."""
 
 
 class NotFoundError(Exception):
-    """What was looked for is not in the graph."""
+    """The graph does not have it."""
 
 
 class NotReadyError(Exception):
@@ -24,8 +24,8 @@ class NotReadyError(Exception):
 
 
 class ServiceError(Exception):
-    """A service gave no response."""
+    """A service sent no response."""
 
 
 class TimedOutError(Exception):
-    """What was waited for did not come in time."""
+    """It did not become available in time."""
