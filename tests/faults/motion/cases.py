@@ -259,7 +259,7 @@ def policies(place: Place) -> Iterator[Motion]:
             **promised,
         )
     for goes, stops, trouble, switches in (
-        ("is killed", "the end of its actor's block", "kill", ()),
+        ("is killed", "the end of its actor's block", "kill", ("end",)),
         ("is frozen 5 s", lease, "freeze", ("lease",)),
     ):
         yield case(
