@@ -104,7 +104,6 @@ LACKS = {
     "rclpy.exceptions.InvalidParameterTypeException.Parameter": "an import inside of the class",
     "rclpy.qos.LivelinessPolicy.RMW_QOS_POLICY_DURABILITY_UNKNOWN": "a slip: LIVELINESS is meant",
     "rclpy.qos.QoSLivelinessPolicy.RMW_QOS_POLICY_DURABILITY_UNKNOWN": "the same class",
-    "rclpy.qos_overriding_options.QoSOverridingOptions.policy_kinds": "options have it, no class",
 }
 """The names that do not exist here, with the reason."""
 

@@ -7,15 +7,38 @@ from typing import TYPE_CHECKING, Any
 from aionode.engine.rules.lifecycle_answers import fill_event
 from aionode.engine.rules.lifecycle_states import StateMachine, TransitionCallbackReturn
 from aionode.logging import get_logger
-from rclpy._impl import messages as msg
+from aionode.qos import QoSProfile
 from rclpy._impl.errors import RCLError
 from rclpy._impl.topics import PublisherHandle
+from rosidl_generator_py import message_class, service_class
 
 if TYPE_CHECKING:
     from aionode.engine.rules.lifecycle_states import Transition
     from rclpy._impl.node import NodeHandle
 
-__all__ = ["LifecycleStateMachine", "TransitionCallbackReturn"]
+__all__ = [
+    "TEN_MESSAGES",
+    "ChangeState",
+    "GetAvailableStates",
+    "GetAvailableTransitions",
+    "GetState",
+    "LifecycleState",
+    "LifecycleStateMachine",
+    "TransitionCallbackReturn",
+    "TransitionDescription",
+    "TransitionEvent",
+]
+
+ChangeState = service_class("lifecycle_msgs/srv/ChangeState")
+GetAvailableStates = service_class("lifecycle_msgs/srv/GetAvailableStates")
+GetAvailableTransitions = service_class("lifecycle_msgs/srv/GetAvailableTransitions")
+GetState = service_class("lifecycle_msgs/srv/GetState")
+LifecycleState = message_class("lifecycle_msgs/msg/State")
+TransitionDescription = message_class("lifecycle_msgs/msg/TransitionDescription")
+TransitionEvent = message_class("lifecycle_msgs/msg/TransitionEvent")
+
+TEN_MESSAGES = QoSProfile(depth=10)
+"""QoS of the services and topics of managed nodes."""
 
 logger = get_logger("rcl_lifecycle")
 
@@ -43,9 +66,7 @@ class LifecycleStateMachine:
     def __init__(self, node: NodeHandle) -> None:
         self.initialized = True
         self.machine = StateMachine()
-        self._events = PublisherHandle(
-            node, msg.TransitionEvent, "~/transition_event", msg.TEN_MESSAGES
-        )
+        self._events = PublisherHandle(node, TransitionEvent, "~/transition_event", TEN_MESSAGES)
 
     @property
     def current_state(self) -> tuple[int, str]:
@@ -78,7 +99,7 @@ class LifecycleStateMachine:
         transition = self._possible(self.machine.find(transition_id=transition_id), transition_id)
         self.machine.state = transition.goal
         if publish:
-            event = fill_event(msg.TransitionEvent(), transition.start, transition.goal)
+            event = fill_event(TransitionEvent(), transition.start, transition.goal)
             self._events.publish(event)
         return transition
 

@@ -6,7 +6,7 @@ from traceback import format_exc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.engine.rules.lifecycle_answers import StateAnswers
-from rclpy._impl import messages as msg
+from rclpy._impl import lifecycle as msg
 from rclpy._impl.errors import RCLError
 from rclpy._impl.lifecycle import LifecycleStateMachine, TransitionCallbackReturn
 from rclpy.lifecycle.managed_entity import ManagedEntity
