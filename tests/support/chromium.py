@@ -44,6 +44,9 @@ OPTIONS: Final = (
     "--disable-extensions",
     "--disable-sync",
     "--no-first-run",
+    "--in-process-gpu",  # one process less for each browser
+    # Chromium starts a process for the page after the next one, for every context.
+    "--disable-features=SpareRendererForSitePerProcess,MediaRouter,OptimizationHints,Translate",
     "--remote-debugging-port=0",
 )
 
