@@ -21,6 +21,7 @@ LAB := $(shell sed -n 's/^\[\(.*\)\]$$/\1/p' tests/lab.toml)
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test check docs bench coverage clean $(LAB)
+.PHONY: check-style check-types check-layers check-docs check-tools check-pages
 
 help:
 	@sed -n '3,12s/^# *//p' Makefile
@@ -31,18 +32,30 @@ demo: .venv/installed
 test: .venv/installed-dev
 	$(BIN)/python -m pytest -q -n $(WORKERS)
 
-check: .venv/installed-dev
+# Each line is a target of its own, so that `make -j 2 check` uses two processors.
+check: check-style check-types check-layers check-docs check-tools check-pages
+
+check-style: .venv/installed-dev
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+
+check-types: .venv/installed-dev
 	$(BIN)/mypy
+
+check-layers: .venv/installed-dev
 	PYTHONPATH=aionode/ros_packages $(BIN)/lint-imports --no-logo
+
+check-docs: .venv/installed-dev
 	$(BIN)/python docs/quotes.py --check
 	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_structure.py
+
+check-tools: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m checks tests/typing tests/idl/test_generator.py
+
+check-pages: .venv/installed-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 
-docs: .venv/installed-dev
-	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
+docs: check-pages
 	@echo "Open site/index.html"
 
 bench: .venv/installed-dev
