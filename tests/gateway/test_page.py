@@ -18,7 +18,7 @@ from examples.web_page_robot import POLICY, Robot
 from tests.support.chromium import CHROMIUM, chromium
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import AsyncIterator, Callable, Sequence
 
     from aionode.engine.context import Context
     from aionode.interfaces.sensor_msgs.msg import Image
@@ -123,6 +123,22 @@ async def hold(page: Page) -> None:
     await page.mouse("mousePressed", x, y - 40)
 
 
+async def drive(page: Page, robot: Node, commands: Sequence[Twist]) -> None:
+    """Hold the pad until the robot moves.
+
+    A page that got no processor for longer than the time to live has let go, and is held again.
+    """
+    await page.click("#teleop .armed")
+    x, y = await page.place("#teleop .pad")
+    held = "document.querySelector('.pad').classList.contains('held')"
+    async with asyncio.timeout(20):
+        while len(commands) < 3 or not commands[-1].linear.x:
+            if not await page.value(held):
+                await page.mouse("mouseReleased", x, y - 40)
+                await page.mouse("mousePressed", x, y - 40)
+            await robot.get_clock().sleep(0.02)
+
+
 async def until(node: Node, condition: Callable[[], bool]) -> None:
     """Check repeatedly whether something has happened, for at most 20 s."""
     async with asyncio.timeout(20):
@@ -193,8 +209,7 @@ async def test_the_stop_button_ends_driving(context: Context) -> None:
     """Even while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         await page.value("document.querySelector('#stop').click(); 1")
         await until(robot, lambda: not commands[-1].linear.x)
         count = len(commands)
@@ -210,8 +225,7 @@ async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
     """Nobody releases the pad: the gateway ends the lease of a client that has left."""
     async with scene(context, driving()) as (page, robot, gateway, commands, _):
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         await page.close()
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
 
@@ -222,8 +236,7 @@ async def test_hiding_the_tab_stops(context: Context) -> None:
     """The page itself stops: browsers run the scripts of hidden tabs only once a second."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         await page.hide()
         await until(robot, lambda: not commands[-1].linear.x)
 
@@ -234,8 +247,7 @@ async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) 
     """Browsers do so to save power; the page is notified, and its timers stand still."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         await page.do("Page.setWebLifecycleState", state="frozen")
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
 
@@ -250,8 +262,7 @@ async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
     async with scene(context, driving(ttl_sec=0.3), is_cuttable=True) as whole:
         page, robot, gateway, commands, network = whole
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         network.clear()
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
         count = len(commands)
@@ -266,8 +277,7 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
     """A script that never returns sends nothing: the gateway stops after the time to live."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         await page.value("setTimeout(() => { for (;;); }, 0); 1")
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
 
@@ -398,8 +408,7 @@ async def test_a_second_page_is_told_who_drives(context: Context) -> None:
     """Its pad is released, because its commands have no effect."""
     async with scene(context, driving()) as (page, robot, _, commands, _), chromium() as other:
         await connected(page)
-        await hold(page)
-        await until(robot, lambda: len(commands) >= 3)
+        await drive(page, robot, commands)
         second = await other.open(await page.value("location.href"))
         await connected(second)
         await second.write("#teleop .speed", "0.1")
