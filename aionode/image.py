@@ -40,6 +40,9 @@ __all__ = [
 DEPTH_HEAD: Final = struct.Struct("<iff")
 """The header that compressedDepth puts before its picture: a format and the depth quantization."""
 
+FORMATS: Final = ("BMP", "JPEG", "PNG", "TIFF", "WEBP")
+"""The formats of compressed images. Pillow reads many more, EPS by starting Ghostscript."""
+
 RVL_HEAD: Final = struct.Struct("<II")
 """The width and height before an RVL picture."""
 MOST_PIXELS: Final = 2**25
@@ -372,8 +375,8 @@ def compress_depth(
 def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> Image:
     """Decompress an image to mono8, rgb8, rgba8 or mono16; the header is kept.
 
-    A depth image of image_transport's ``compressedDepth`` becomes 16UC1 or 32FC1, as it was;
-    unknown depths are 0 or NaN.
+    It may be a BMP, JPEG, PNG, TIFF or WebP image. A depth image of image_transport's
+    ``compressedDepth`` becomes 16UC1 or 32FC1, as it was; unknown depths are 0 or NaN.
 
     Args:
         image: The message.
@@ -396,7 +399,8 @@ def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> I
         picture = from_numpy(depths, "mono16", image.header)
         return depth_of(picture, DEPTH_HEAD.unpack_from(data), image.format)
     try:
-        picture = pillow().open(io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data))
+        file = io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data)
+        picture = pillow().open(file, formats=FORMATS)
         if size not in (None, picture.size):
             raise MessageError(
                 "sensor_msgs/msg/CompressedImage.data",

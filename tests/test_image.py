@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import sys
 import tracemalloc
@@ -233,6 +234,19 @@ def test_mistakes_say_what_fits() -> None:
         compress(from_numpy(np.zeros((1, 1), np.uint16), "mono16"))
     with pytest.raises(MessageError, match=r"no image that can be read.*'png'"):
         decompress(CompressedImage(format="png", data=b"nothing"))
+
+
+def test_pictures_that_start_a_program_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pillow gives EPS to Ghostscript, and what a robot hears may come from anyone."""
+    started: list[object] = []
+    monkeypatch.setattr("PIL.EpsImagePlugin.Ghostscript", lambda *given: started.append(given))
+    file = io.BytesIO()
+    PIL.Image.new("RGB", (2, 2)).save(file, "EPS")
+
+    with pytest.raises(MessageError, match="no image that can be read"):
+        decompress(CompressedImage(format="jpeg", data=file.getvalue()))
+
+    assert not started
 
 
 def test_without_pillow_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
