@@ -36,7 +36,9 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import local_context, settle
 from tests.observe.test_observe import Answering
 from tests.observe.test_why import names
-from tests.support.peers import contexts_over
+from tests.support.peers import contexts_over, isolated
+
+__all__ = ["isolated"]  # a fixture
 
 CHANNEL = "/_aionode/causes"
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -21,7 +21,7 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.observe import Snapshot, observe, rates
 from aionode.testing import local_context, settle
 from tests.support.fork_server import start
-from tests.support.peers import isolated_environment, quiet_node, two_contexts
+from tests.support.peers import quiet_node, two_contexts
 
 PATIENCE_S = 20.0
 """Time in which processes find each other, in seconds."""
@@ -165,8 +165,6 @@ async def test_a_stopped_process_is_named_and_delays_nobody(
 ) -> None:
     """The report of the others is there within the time limit, with links or without."""
     monkeypatch.setenv("AIONODE_LINK", link)
-    for name, value in isolated_environment().items():
-        monkeypatch.setenv(name, value)
     talker = start(
         ["examples/talker.py"],
         env=dict(os.environ),

@@ -11,6 +11,7 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import ExitStack, asynccontextmanager, closing, contextmanager, suppress
 from typing import Any
 
+import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode.engine.context import Context
@@ -22,6 +23,7 @@ __all__ = [
     "Collector",
     "contexts_over",
     "free_ports",
+    "isolated",
     "isolated_environment",
     "kept",
     "known",
@@ -87,6 +89,13 @@ def isolated_environment() -> dict[str, str]:
         "AIONODE_MEETING_PORTS": ",".join(str(p) for p in ports[:3]),
         "AIONODE_ROUTER_PORT": str(ports[3]),
     }
+
+
+@pytest.fixture(autouse=True)
+def isolated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contexts and processes of a test reach each other, and nothing else on the machine."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
 
 
 @asynccontextmanager
