@@ -61,8 +61,10 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
     def topic_name(self) -> str:
         """The full name of the topic."""
 
-    def _hold(self, lease: Any, stop: LeasedT_contra | bytes | bytearray | memoryview) -> None:
-        """Give `lease` the exclusive right to publish, and prepare its stop.
+    def _hold(
+        self, lease: Any, stop: LeasedT_contra | bytes | bytearray | memoryview | None
+    ) -> None:
+        """Give `lease` the exclusive right to publish, and prepare its stop, if there is one.
 
         Raises:
             LeaseHeldError: another lease has it.
@@ -76,6 +78,13 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
 
     def _number_stop(self, step: int) -> tuple[int, int]:
         """Return the sequence number of the stop, `step` after the last one, and its time."""
+
+    def _stop_of(self, stop: LeasedT_contra | bytes | bytearray | memoryview) -> Any:
+        """Return a stop as a message that nobody modifies.
+
+        Raises:
+            TypeError: it is not of the publisher's type.
+        """
 
     def _prepare_stop(
         self, stop: LeasedT_contra, number: Callable[[], int]
@@ -109,6 +118,9 @@ class CommandLease(Generic[MsgT]):
     None of this needs the holder's task to run again, nor, for subscriptions in other processes,
     the event loop.
 
+    Where the stop depends on the command, as for an arm that is to hold its last position, each
+    command brings its own: ``lease.publish(command, stop=command)``.
+
     When the time to live is over, the block is cancelled as by `asyncio.timeout`, and raises
     LeaseExpiredError. `publish` checks the time itself, so a holder that was frozen sends nothing.
 
@@ -124,7 +136,7 @@ class CommandLease(Generic[MsgT]):
     def __init__(
         self,
         publisher: LeasedPublisher[MsgT],
-        stop: MsgT | bytes | bytearray | memoryview,
+        stop: MsgT | bytes | bytearray | memoryview | None,
         ttl_sec: float,
         clock: Clock | None,
         time_base: TimeBase,
@@ -153,7 +165,7 @@ class CommandLease(Generic[MsgT]):
         self._is_publishing = False
         self._asked = ""  # why another thread is ending it, if one is
         self._numbers = (0, 0)  # the stop's sequence number and time
-        self._message: MsgT | None = None  # the stop; never modified
+        self._message: MsgT | None = None  # the stop, if there is one yet; never modified
         self._senders: tuple[StopSender, ...] = ()
         self._refusal: Callable[[], Exception] | None = None  # for `publish` after the end
         # The loop of the publisher's node, or of the block if the node is not running.
@@ -219,9 +231,10 @@ class CommandLease(Generic[MsgT]):
 
     def prepare(self, stop: MsgT | None = None) -> None:
         """Encode the stop for each transport, and again when the publisher starts using another."""
-        self._message = self._message if stop is None else stop
-        if self._message is not None:
-            self._senders = self._publisher._prepare_stop(self._message, lambda: self._numbers[0])
+        stop = self._message if stop is None else stop
+        if stop is not None:
+            self._senders = self._publisher._prepare_stop(stop, lambda: self._numbers[0])
+            self._message = stop
 
     async def __aexit__(
         self,
@@ -267,29 +280,48 @@ class CommandLease(Generic[MsgT]):
 
     # Commands
 
-    def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
+    def publish(
+        self,
+        msg: MsgT | bytes | bytearray | memoryview,
+        stop: MsgT | bytes | bytearray | memoryview | None = None,
+    ) -> None:
         """Publish a command like `Publisher.publish`, and restart the time to live.
 
         Like `Publisher.publish`, it may be called from any thread.
 
+        Args:
+            msg: The command.
+            stop: The stop from this command on; by default it remains as it is. It is validated and
+                encoded before the command is sent, and may be the same object.
+
         Raises:
             LeaseExpiredError: the time to live is over, or the block has ended; only the stop was
                 sent (a TimeoutError).
+            ValueError: the lease has no stop yet; nothing was sent.
             RuntimeError: the lease was not entered.
-            Exception: the exceptions of `Publisher.publish`; the time to live is not restarted.
+            Exception: the exceptions of `Publisher.publish`; the stop is as before, and the time to
+                live is not restarted.
         """
         if self._affinity.is_other_thread():
-            self._affinity.wait_for(self.publish, msg)
+            self._affinity.wait_for(self.publish, msg, stop)
             return
         with self._lock:
             self._look()
             if self._refusal is not None or self._state is not State.OPEN:
                 raise self._refused()
+            if stop is None and self._message is None:
+                raise ValueError(f"{self!r}: it has no stop yet; pass stop= with the first command")
             self._is_publishing = True
             # The sign of life of a holder that is frozen in the middle is as old as its command.
             at_ns = self._time_base.steady_ns()
+            before = self._message, self._senders
             try:
+                if stop is not None:
+                    self.prepare(self._publisher._stop_of(stop))
                 self._publisher._publish_leased(msg)
+            except BaseException:
+                self._message, self._senders = before
+                raise
             finally:
                 self._is_publishing = False
                 self._end_if_refused()
@@ -346,7 +378,7 @@ class CommandLease(Generic[MsgT]):
                 self._refusal = refusal
                 if self._is_publishing:  # interrupted by a signal handler: wait for its end
                     return
-                self._numbers = self._publisher._number_stop(1)
+                self._number(1)
             elif self._state is not State.SENT:
                 return
             self._state = State.ENDED
@@ -366,8 +398,13 @@ class CommandLease(Generic[MsgT]):
         """Finish an end that was requested during a publication, after that command."""
         if self._refusal is not None:
             if self._state is State.SENT:
-                self._numbers = self._publisher._number_stop(2)
+                self._number(2)
             self.end_for(self._refusal)
+
+    def _number(self, step: int) -> None:
+        """Number the stop; without one, the gap would look like a lost message."""
+        if self._message is not None:
+            self._numbers = self._publisher._number_stop(step)
 
     def _send(self, send: Callable[[StopSender, int, int], None]) -> None:
         """Send the stop through each transport; a failure of one does not affect the others."""
@@ -413,7 +450,7 @@ class CommandLease(Generic[MsgT]):
             expired = partial(LeaseExpiredError, self._publisher.topic_name)
             self._refusal = partial(expired, reason or self._of_silence())
             self._has_expired = True
-            self._numbers = self._publisher._number_stop(1 + self._is_publishing)
+            self._number(1 + self._is_publishing)
             self._state = State.SENT
             self._send(lambda sender, *numbers: sender.send_past_loop(*numbers))
         finally:

@@ -197,7 +197,7 @@ class Publisher(Endpoint, Generic[MsgT]):
 
     def lease(
         self,
-        stop: MsgT | bytes | bytearray | memoryview,
+        stop: MsgT | bytes | bytearray | memoryview | None,
         ttl_sec: float = 0.3,
         clock: Clock | None = None,
     ) -> CommandLease[MsgT]:
@@ -214,7 +214,8 @@ class Publisher(Endpoint, Generic[MsgT]):
 
         Args:
             stop: The message that stops what the commands move, or its CDR bytes. It is validated
-                and encoded when the block is entered.
+                and encoded when the block is entered. None if there is nothing to stop before the
+                first command, which brings its own stop; see `CommandLease.publish`.
             ttl_sec: The longest pause between commands, in seconds, from the first command on. It
                 is measured in steady time, including time while the host is suspended.
             clock: A different clock to measure it, as for timers. If that clock stands still for
@@ -231,7 +232,7 @@ class Publisher(Endpoint, Generic[MsgT]):
 
     def _make_lease(
         self,
-        stop: MsgT | bytes | bytearray | memoryview,
+        stop: MsgT | bytes | bytearray | memoryview | None,
         ttl_sec: float,
         clock: Clock | None,
         refuse: Callable[[], None] | None = None,
@@ -251,16 +252,22 @@ class Publisher(Endpoint, Generic[MsgT]):
             )
         return CommandLease(self, stop, ttl_sec, clock, self._time_base, refuse)
 
-    def _hold(self, lease: CommandLease[MsgT], stop: MsgT | bytes | bytearray | memoryview) -> None:
-        """Give `lease` the exclusive right to publish, and prepare its stop."""
+    def _hold(
+        self, lease: CommandLease[MsgT], stop: MsgT | bytes | bytearray | memoryview | None
+    ) -> None:
+        """Give `lease` the exclusive right to publish, and prepare its stop, if there is one."""
         self._refuse_if_destroyed("enter a lease")
         if self._lease is not None:
             self._lease.finish()
         if self._lease is not None:
             raise LeaseHeldError(self.topic_name)
-        lease.prepare(snapshot(stop if type(stop) is self.msg_type else self._fitting(stop)))
+        lease.prepare(None if stop is None else self._stop_of(stop))
         self._lease = lease
         self._writers = (HeldWriter(self.topic_name),)
+
+    def _stop_of(self, stop: MsgT | bytes | bytearray | memoryview) -> MsgT:
+        """Return a stop as a message that nobody modifies."""
+        return snapshot(stop if type(stop) is self.msg_type else self._fitting(stop))
 
     def _prepare_stop(self, stop: MsgT, number: Callable[[], int]) -> tuple[StopSender, ...]:
         """Return the stop senders of a lease, one per transport; `number` numbers the stop."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any, Final
 
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from aionode import Node, Publisher
-    from aionode.clock import Alarm, Clock
+    from aionode import CommandLease, Node
+    from aionode.clock import Alarm
     from aionode.learn._entries import Action
     from aionode.learn._observer import Observations
     from aionode.learn._plan import Numbers
@@ -92,77 +91,6 @@ class ActorStats:
         return self._plan.underruns
 
 
-class HoldingLease:
-    """A lease of a topic whose ``stop`` is ``hold``: there is no stop before the first command.
-
-    The stop is the last command, which is sent once more when the time to live is over; the block
-    of the lease raises as that of a `CommandLease` does.
-    """
-
-    def __init__(self, publisher: Publisher[Any], ttl_sec: float, clock: Clock) -> None:
-        self._publisher = publisher
-        self._ttl_ns = round(ttl_sec * S_TO_NS)
-        self._clock = clock
-        self._last: Any = None
-        self._alarm: Alarm | None = None
-        self._task: asyncio.Task[Any] | None = None
-        self._cancelling = 0
-        self._has_expired = False
-
-    async def __aenter__(self) -> Self:
-        """Begin."""
-        self._task = asyncio.current_task()
-        assert self._task is not None  # noqa: S101  # a coroutine runs in one
-        self._cancelling = self._task.cancelling()
-        return self
-
-    def publish(self, message: Any) -> None:
-        """Publish a command, and restart the time to live.
-
-        Raises:
-            LeaseExpiredError: it is over.
-        """
-        if self._has_expired:
-            raise self._expired()
-        ends_ns = self._clock.now_ns() + self._ttl_ns
-        self._publisher.publish(message)
-        self._last = message
-        if self._alarm is not None:
-            self._alarm.cancel()
-        self._alarm = self._clock.call_at(ends_ns, self._expire)
-
-    def _expire(self) -> None:
-        self._has_expired = True
-        if not self._publisher.destroyed:
-            self._publisher.publish(self._last)
-        if self._task is not None:
-            self._task.cancel()
-
-    def _expired(self) -> LeaseExpiredError:
-        reason = f"nothing was published for {self._ttl_ns / S_TO_NS:g} s"
-        return LeaseExpiredError(self._publisher.topic_name, reason)
-
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        """End, as a `CommandLease` does.
-
-        Raises:
-            LeaseExpiredError: the time to live ran out before.
-        """
-        if self._alarm is not None:
-            self._alarm.cancel()
-        if not self._has_expired or self._task is None:
-            return
-        if self._task.uncancel() > self._cancelling:
-            return  # another cancellation passes
-        if error is None or isinstance(error, asyncio.CancelledError):
-            raise self._expired() from error
-
-
 class Actor:
     """Sends actions at their times, and stops the robot when there are none.
 
@@ -203,7 +131,7 @@ class Actor:
             for limits in zip(*(action.limits for action in actions), strict=True)
         )
         self._plan = ActionPlan(self._period_ns, lower, upper, round(blend_sec * S_TO_NS))
-        self._leases: list[Any] = []
+        self._leases: list[CommandLease[Any]] = []
         self._stack = AsyncExitStack()
         self._alarm: Alarm | None = None
         self._asked_ns: int | None = None  # when the inference that is running began
@@ -222,12 +150,7 @@ class Actor:
             for action in self._actions:
                 publisher = self._node.create_publisher(action.message_type, action.topic, 1)
                 stack.callback(publisher.destroy)
-                stop, ttl_sec = action.stop_message(), action.lease_sec
-                lease: Any = (
-                    HoldingLease(publisher, ttl_sec, self._clock)
-                    if stop is None
-                    else publisher.lease(stop=stop, ttl_sec=ttl_sec, clock=self._clock)
-                )
+                lease = publisher.lease(action.stop_message(), action.lease_sec, self._clock)
                 self._leases.append(await stack.enter_async_context(lease))
             self._stack = stack.pop_all()
         return self
@@ -365,7 +288,8 @@ class Actor:
         parts = np.split(values, self._ends)
         try:
             for action, lease, part in zip(self._actions, self._leases, parts, strict=True):
-                lease.publish(action.message(part, stamp))
+                command = action.message(part, stamp)
+                lease.publish(command, stop=command if action.stop == "hold" else None)
         except REFUSALS as error:
             self._refusal = error  # the block learns of it as its lease ends, or by its next chunk
             return False

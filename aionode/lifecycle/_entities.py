@@ -84,7 +84,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
 
     def lease(
         self,
-        stop: MsgT | bytes | bytearray | memoryview,
+        stop: MsgT | bytes | bytearray | memoryview | None,
         ttl_sec: float = 0.3,
         clock: Clock | None = None,
     ) -> CommandLease[MsgT]:

@@ -1,7 +1,8 @@
 """A robot for tests whose commander holds a lease.
 
 ``python tests/end_to_end/lease_member.py commander TTL WHAT`` publishes 1.0 on /speed every 20 ms
-in a lease of TTL seconds, with the stop 0.0, and prints ``driving``. After a line on stdin, it does
+in a lease of TTL seconds, with the stop 0.0, and prints ``driving``. With ``hold`` as a further
+argument it publishes 0, 1, 2 ..., each of which is its own stop. After a line on stdin, it does
 WHAT: ``sleep`` and ``spin`` block its event loop for 2 s, ``fork`` ends the lease in a forked
 child, ``orphan`` ends the loop without ending the block, ``hang`` blocks the loop forever. Then it
 prints ``blocked``. It prints the name of the error that ends the block, and does not end.
@@ -49,12 +50,13 @@ def block(what: str) -> None:
         threading.Event().wait(60 if what == "hang" else BLOCK_SEC)
 
 
-async def drive(lease: CommandLease[Float64], what: str) -> None:
+async def drive(lease: CommandLease[Float64], what: str, *, holds: bool) -> None:
     """Publish commands, and do `what` after a line on stdin."""
     line = threading.Thread(target=sys.stdin.readline, daemon=True)
     line.start()
     for count in range(10_000):
-        lease.publish(Float64(data=1.0))
+        command = Float64(data=count if holds else 1.0)
+        lease.publish(command, stop=command if holds else None)
         if count == 10:
             tell("driving")
         if not line.is_alive() and what:
@@ -88,14 +90,15 @@ def fork(lease: CommandLease[Float64]) -> None:
     os._exit(0)
 
 
-async def command(ttl_sec: float, what: str) -> None:
+async def command(ttl_sec: float, what: str, *, holds: bool = False) -> None:
     """Hold the lease."""
     async with Node("commander") as node:
         speed = node.create_publisher(Float64, "/speed", 10)
         await speed.wait_for_subscribers()
         try:
-            async with speed.lease(stop=Float64(data=0.0), ttl_sec=ttl_sec) as lease:
-                await drive(lease, what)
+            stop = None if holds else Float64(data=0.0)
+            async with speed.lease(stop=stop, ttl_sec=ttl_sec) as lease:
+                await drive(lease, what, holds=holds)
         except AionodeError as error:
             tell(type(error).__name__)
             await asyncio.Event().wait()
@@ -111,7 +114,7 @@ def orphan(ttl_sec: float, what: str) -> None:
     threading.Event().wait(BLOCK_SEC)
 
 
-def main(role: str, ttl_sec: str = "", what: str = "") -> None:
+def main(role: str, ttl_sec: str = "", what: str = "", stop: str = "") -> None:
     """Run one program."""
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     Context.default()
@@ -120,7 +123,7 @@ def main(role: str, ttl_sec: str = "", what: str = "") -> None:
     elif what == "orphan":
         orphan(float(ttl_sec), what)
     else:
-        aionode.run(lambda: command(float(ttl_sec), what), args=[])
+        aionode.run(lambda: command(float(ttl_sec), what, holds=stop == "hold"), args=[])
 
 
 if __name__ == "__main__":

@@ -58,6 +58,23 @@ def test_the_stop_of_a_blocked_loop_arrives(
         assert stopped_s - blocked_s < TTL_SEC + LATE_SEC
 
 
+@pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
+def test_the_last_command_is_the_stop_of_a_blocked_loop(
+    monkeypatch: pytest.MonkeyPatch, link: str
+) -> None:
+    """Where each command brings its own: it arrives once more, while the loop is blocked."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with (
+        Process(PROGRAM, "wheels") as wheels,
+        Process(PROGRAM, "commander", str(TTL_SEC), "hang", "hold") as commander,
+    ):
+        commander.expect("driving")
+        commander.write("go")
+        commander.expect("blocked")
+        told = speeds(wheels, TTL_SEC + LATE_SEC)
+        assert told[-1] == told[-2] != told[-3]
+
+
 @pytest.mark.parametrize("link", [pytest.param("on", marks=pytest.mark.stress), "off"])
 def test_a_frozen_holder_sends_nothing_but_the_stop_when_it_wakes(
     monkeypatch: pytest.MonkeyPatch, link: str

@@ -507,6 +507,62 @@ async def test_all_stops_can_be_sent_from_a_thread(robot: Robot) -> None:
     assert await robot.took() == [1, 0]
 
 
+# A stop for each command
+
+
+async def test_the_stop_is_that_of_the_last_command(robot: Robot) -> None:
+    """An arm holds the position that it got last; a later change of the object is not sent."""
+    async with robot.speed.lease(stop=None) as lease:
+        for value in (1, 2):
+            command = Int8(data=value)
+            lease.publish(command, stop=command)
+            command.data = 9
+    assert await robot.took() == [1, 2, 2]
+
+
+async def test_a_stop_remains_until_a_command_brings_another(robot: Robot) -> None:
+    """A command without one changes nothing."""
+    async with robot.speed.lease(stop=STOP) as lease:
+        lease.publish(Int8(data=1), stop=cdr.encode(Int8(data=5)))
+        lease.publish(Int8(data=2))
+    assert await robot.took() == [1, 2, 5]
+
+
+async def test_nothing_is_sent_without_a_stop_before_the_first_command(robot: Robot) -> None:
+    """And nothing is numbered, so that no subscription counts a lost message."""
+    async with robot.speed.lease(stop=None):
+        await robot.clock.advance(1.0)
+    assert await robot.took() == []
+    assert robot.speed.stats.published == 0
+
+
+async def test_a_first_command_without_any_stop_is_refused(robot: Robot) -> None:
+    """Nothing could end what it moves."""
+    async with robot.speed.lease(stop=None) as lease:
+        with pytest.raises(ValueError, match="no stop yet; pass stop="):
+            lease.publish(Int8(data=1))
+    assert await robot.took() == []
+
+
+@pytest.mark.parametrize(("data", "stop"), [(300, 3), (3, 300)])
+async def test_a_command_that_is_refused_leaves_the_stop_as_it_was(
+    robot: Robot, data: int, stop: int
+) -> None:
+    """Whichever of the two does not fit its field, neither is sent."""
+    async with robot.speed.lease(stop=STOP) as lease:
+        lease.publish(Int8(data=1), stop=Int8(data=2))
+        with pytest.raises(MessageError):
+            lease.publish(Int8(data=data), stop=Int8(data=stop))
+    assert await robot.took() == [1, 2]
+
+
+async def test_another_thread_may_bring_the_stop(robot: Robot) -> None:
+    """As it may publish."""
+    async with robot.speed.lease(stop=None) as lease:
+        await asyncio.to_thread(lease.publish, Int8(data=1), Int8(data=2))
+    assert await robot.took() == [1, 2]
+
+
 # Who may publish
 
 
@@ -599,7 +655,7 @@ async def test_the_stop_may_be_given_as_bytes(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize(
-    ("stop", "error"), [(Int8(data=1000), MessageError), (String(), TypeError), (None, TypeError)]
+    ("stop", "error"), [(Int8(data=1000), MessageError), (String(), TypeError)]
 )
 async def test_a_stop_that_does_not_fit_is_refused_at_the_beginning(
     robot: Robot, stop: Any, error: type[Exception]

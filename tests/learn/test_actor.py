@@ -15,6 +15,7 @@ import pytest
 
 from aionode import Node
 from aionode.clock import Time
+from aionode.endpoints.lease import send_stops
 from aionode.errors import (
     ContractError,
     EntityDestroyedError,
@@ -423,6 +424,31 @@ async def test_a_robot_that_holds_gets_its_last_command_again(robot: Robot) -> N
     with pytest.raises(LeaseExpiredError):
         await sent(robot, contract_of(stop="hold"), 1.0, 0.5)
     assert [value for _, value in robot.got] == [1.0, 0.5, 0.5]
+
+
+async def test_a_robot_that_holds_is_stopped_past_the_loop(robot: Robot) -> None:
+    """As by a second Ctrl-C, and at the end of the interpreter."""
+
+    async def drive() -> None:
+        async with contract_of(stop="hold").act(robot.node) as actor:
+            actor.send([0.5])
+            assert await asyncio.to_thread(send_stops, 0)
+            await asyncio.Event().wait()
+
+    with pytest.raises(LeaseExpiredError, match="the process was about to end"):
+        await drive()
+    await settle()
+    assert [value for _, value in robot.got] == [0.5, 0.5]
+
+
+async def test_a_robot_that_holds_gets_its_last_command_again_as_the_block_ends(
+    robot: Robot,
+) -> None:
+    """Nobody has to wait for the end of the lease."""
+    async with contract_of(stop="hold").act(robot.node) as actor:
+        actor.send([0.5])
+    await settle()
+    assert [value for _, value in robot.got] == [0.5, 0.5]
 
 
 async def test_a_robot_that_holds_is_sent_nothing_before_the_first_command(robot: Robot) -> None:

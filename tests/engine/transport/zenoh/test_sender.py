@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from aionode.engine.transport.zenoh.connections.handlers import BULK_BYTES
 from aionode.engine.transport.zenoh.endpoints.sender import LATE, SentBy, ZenohSender
+from aionode.engine.transport.zenoh.endpoints.stop import ZenohStop
+from aionode.interfaces.std_msgs.msg import Int8
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 SMALL, LARGE = 100, BULK_BYTES
@@ -96,3 +98,11 @@ def test_a_crowd_lets_more_messages_wait() -> None:
     crowded.choose(SMALL)
 
     assert crowded.large.limit == LATE
+
+
+@pytest.mark.parametrize("large", [0, 1])
+def test_a_stop_is_sent_behind_the_large_messages_that_wait(large: int) -> None:
+    """Each command may bring a stop of its own, however large the commands before it were."""
+    writer: Any = SimpleNamespace(sender=sender(LAST, large=large))
+    ZenohStop(writer, Int8(), bool)
+    assert writer.sender.used_bulk == bool(large)

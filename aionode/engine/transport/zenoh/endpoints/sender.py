@@ -83,7 +83,8 @@ class ZenohSender:
             it sends everything, to keep the order.
         transient: Whether Zenoh keeps messages for late readers.
         expiry: Informed of each message that Zenoh keeps, if they expire.
-        used_bulk: Whether a large message was sent since a lease began.
+        used_bulk: Whether a large message was sent since the stop of a lease was prepared, or then
+            waited.
         puts_small_at_once: Whether `choose` is known to return LOOP for small messages.
     """
 

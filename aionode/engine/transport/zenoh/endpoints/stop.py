@@ -62,8 +62,10 @@ class ZenohStop(StopSender):
         self._extra = b""  # set once it was sent
         self._ends_ns = 0  # when to stop repeating it
         self._past = 0  # its number, once it was sent while the loop was blocked
-        # Whether a large message was published since: only behind it, nothing is overtaken.
-        writer.sender.used_bulk = len(self._payload) >= BULK_BYTES
+        # Whether a large message is on its way or was published since: only behind it, nothing is
+        # overtaken.
+        sender = writer.sender
+        sender.used_bulk = len(self._payload) >= BULK_BYTES or len(sender.large) > 0
 
     @property
     def is_repeated(self) -> bool:
