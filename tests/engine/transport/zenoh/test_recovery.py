@@ -500,26 +500,49 @@ async def test_a_connection_that_takes_long_to_be_made_is_not_given_up() -> None
         token.undeclare()
 
 
+@asynccontextmanager
+async def only_at_router() -> AsyncIterator[str]:
+    """A session that only the router of ROS reaches, with the token of a node."""
+    settings = {
+        "mode": "peer",
+        "connect/endpoints": [f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"],
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+    }
+    with closing(await asyncio.to_thread(zenoh.open, zenoh_config(settings))) as hidden:
+        zid = str(hidden.zid())
+        token = announce(hidden, zid, "hidden")
+        yield zid
+        token.undeclare()
+
+
 async def test_an_unreachable_participant_is_given_up(comparisons: Comparisons) -> None:
     """A program on a host that only the router reaches would be looked for for ever."""
-    async with robot("theirs", "one") as (_, one), context("a1") as ours:
-        router_port = os.environ["AIONODE_ROUTER_PORT"]
-        settings = {
-            "mode": "peer",
-            "connect/endpoints": [f"tcp/127.0.0.1:{router_port}"],
-            "listen/endpoints": [],
-            "scouting/multicast/enabled": False,
-            "scouting/gossip/enabled": False,
-        }
-        with closing(await asyncio.to_thread(zenoh.open, zenoh_config(settings))) as hidden:
-            zid = str(hidden.zid())
-            token = announce(hidden, zid, "hidden")
-            await until_seen(ours, "theirs", "one")
-            await asyncio.to_thread(one.close)
-            async with asyncio.timeout(3 * LIMIT_S):
-                await until(lambda: times_found(comparisons, zid) == ATTEMPTS)
-            await have_more(comparisons, 3)
-            token.undeclare()
+    async with robot("theirs", "one") as (_, one), context("a1") as ours, only_at_router() as zid:
+        await until_seen(ours, "theirs", "one")
+        await asyncio.to_thread(one.close)
+        async with asyncio.timeout(3 * LIMIT_S):
+            await until(lambda: times_found(comparisons, zid) == ATTEMPTS)
+        await have_more(comparisons, 3)
+
+    assert times_found(comparisons, zid) == ATTEMPTS
+
+
+async def test_an_unreachable_participant_that_one_answer_lacks_is_given_up(
+    comparisons: Comparisons, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A router that was just connected anew may not name it yet, after each cut."""
+    async with robot("theirs", "one") as (_, one), context("a1") as ours, only_at_router() as zid:
+        await until_seen(ours, "theirs", "one")
+        await asyncio.to_thread(one.close)
+        async with asyncio.timeout(3 * LIMIT_S):
+            await until(lambda: times_found(comparisons, zid) == 1)
+            looking(monkeypatch, lambda token: participant_of(token) != zid, 2)
+            comparisons_before = len(comparisons)
+            await until(lambda: set() in comparisons[comparisons_before:])
+            await until(lambda: times_found(comparisons, zid) == ATTEMPTS)
+        await have_more(comparisons, 3)
 
     assert times_found(comparisons, zid) == ATTEMPTS
 

@@ -250,9 +250,14 @@ class Recovery(ConnectionMend):
         if self._session is None:
             return
         if missing is not None:
-            self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
-                zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
-            }
+            # A source that was just connected anew may not name all others yet: one that is not
+            # named is back only if it is connected, and this context if it is seen again.
+            back = self._state.connections.kinds.keys() | {self._state.participant}
+            self._attempts = {
+                zid: count
+                for zid, count in self._attempts.items()
+                if count >= ATTEMPTS or zid not in back
+            } | {zid: self._attempts.get(zid, 0) + 1 for zid in missing}
         if missing:
             logger.info(
                 "lost touch with running processes %s; cutting connections, so that Zenoh makes "
