@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["Actor", "ActorStats"]
 
 QUIET_SEC: Final = 10.0
-"""The time between two lines of the log about the same."""
+"""The minimum time between two log lines about the same thing."""
 
 
 REFUSALS: Final = (
@@ -48,11 +48,11 @@ REFUSALS: Final = (
     EntityInactiveError,
     MessageError,
 )
-"""What publishing a command raises once the robot is stopped, or where it cannot be sent."""
+"""What publishing a command raises once the robot is stopped, or if it cannot be sent."""
 
 
 class ActorStats:
-    """What an actor has sent, and what it has not.
+    """Counts of the actions that an actor has sent, and of those that it has not.
 
     Attributes:
         latency: How long each inference of `Actor.run` took, by the node's clock.
@@ -77,12 +77,12 @@ class ActorStats:
 
     @property
     def late(self) -> int:
-        """How many were dropped because their time was over."""
+        """How many were dropped because their time had passed."""
         return self._plan.late
 
     @property
     def clamped(self) -> int:
-        """How many of those sent were beyond a limit of the contract, and were clamped to it."""
+        """How many of those sent exceeded a limit of the contract and were clamped to it."""
         return self._plan.clamped
 
     @property
@@ -94,12 +94,12 @@ class ActorStats:
 class Actor:
     """Sends actions at their times, and stops the robot when there are none.
 
-    Created by `Contract.act` for ``async with``. While the block is open it holds a lease of each
-    action topic: if no action is sent for the `lease_sec` of the contract, the stops go out, and
-    the block raises LeaseExpiredError. That time starts with the first action.
+    Created by `Contract.act` for ``async with``. While the block is open, it holds a lease on each
+    action topic: if no action is sent for the contract's `lease_sec`, the stops are sent and
+    the block raises LeaseExpiredError. The time starts with the first action.
 
     Attributes:
-        stats: What was sent, and what was not.
+        stats: Counts of what was sent and what was not.
     """
 
     def __init__(
@@ -134,13 +134,13 @@ class Actor:
         self._leases: list[CommandLease[Any]] = []
         self._stack = AsyncExitStack()
         self._alarm: Alarm | None = None
-        self._asked_ns: int | None = None  # when the inference that is running began
+        self._asked_ns: int | None = None  # when the current inference began
         self._was_slow = False
         self._refusal: Exception | None = None  # once a lease has ended
         self.stats = ActorStats(self._plan)
 
     async def __aenter__(self) -> Self:
-        """Take the leases of the action topics.
+        """Take the leases on the action topics.
 
         Raises:
             LeaseHeldError: another lease of a publisher is held (a RuntimeError).
@@ -165,7 +165,7 @@ class Actor:
 
         Raises:
             LeaseExpiredError: no action was sent in time, so the robot was stopped before.
-            MessageError: a number does not fit its field (a ValueError); the same.
+            MessageError: a number does not fit its field (a ValueError); the robot was stopped too.
         """
         if self._alarm is not None:
             self._alarm.cancel()
@@ -183,15 +183,16 @@ class Actor:
     # Chunks
 
     def plan(self, chunk: npt.ArrayLike, since: Time) -> None:
-        """Send the actions of a chunk at their times, in place of what was planned for these.
+        """Send the actions of a chunk at their times, replacing what was planned for those times.
 
-        The first one is for one period of the contract after `since`, as in the rows of a data set,
-        and each further one for a period more. Those whose time is over are dropped and counted.
+        The first action is due one period of the contract after `since`, as in the rows of a data
+        set, and each further one a period later. Those whose time has passed are dropped and
+        counted.
 
         Args:
-            chunk: A row for each action, with the numbers of the contract's actions in their order.
-                A single action may be one row by itself.
-            since: The time of the observation that it answers, `Seen.at`.
+            chunk: A row for each action: the numbers of the contract's actions, in their order.
+                A single action may be passed as one row.
+            since: The time of the observation that the chunk answers, `Seen.at`.
 
         Raises:
             ValueError: the chunk has another shape, or numbers that are not finite.
@@ -214,13 +215,13 @@ class Actor:
         self._refuse_if_stopped()
 
     def send(self, action: npt.ArrayLike) -> None:
-        """Send one action now, in place of what was planned: for a loop that has its own pace.
+        """Send one action now, replacing what was planned: for a loop with a pace of its own.
 
         Args:
-            action: The numbers of the contract's actions in their order; limits clamp them.
+            action: The numbers of the contract's actions in their order, clamped to the limits.
 
         Raises:
-            ValueError: they are not as many, or not finite.
+            ValueError: the action has another number of values, or some are not finite.
             MessageError: one does not fit its field (a ValueError).
             LeaseExpiredError: the robot was stopped (a TimeoutError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -232,9 +233,9 @@ class Actor:
         self._refuse_if_stopped()
 
     def left_over(self, since: Time | None = None) -> Numbers:
-        """Return what is planned as a chunk that answers an observation of some time would have it.
+        """Return what is planned as a chunk that would answer an observation of a given time.
 
-        For real-time chunking, whose policies continue what the robot is about to do.
+        For real-time chunking, where policies continue what the robot is about to do.
 
         Args:
             since: The time, such as `Seen.at`; now by default.
@@ -263,7 +264,7 @@ class Actor:
     # Sending
 
     def _send(self) -> None:
-        """Send what is due, and come back when the next action is."""
+        """Send what is due, and schedule the next call for the next action."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
@@ -272,7 +273,7 @@ class Actor:
         if action is not None and not self._publish(action.values):
             return
         next_ns = self._plan.next_ns
-        if next_ns is None:  # half a period after the next one would be due it is missing
+        if next_ns is None:  # the next one counts as missing half a period after it would be due
             end_ns = self._plan.end_ns
             if end_ns is None:
                 return
@@ -291,7 +292,7 @@ class Actor:
                 command = action.message(part, stamp)
                 lease.publish(command, stop=command if action.stop == "hold" else None)
         except REFUSALS as error:
-            self._refusal = error  # the block learns of it as its lease ends, or by its next chunk
+            self._refusal = error  # raised in the block when its lease ends, or by its next chunk
             return False
         return True
 
@@ -314,27 +315,27 @@ class Actor:
     # Policies
 
     async def run(self, policy: Callable[..., Any], *, executor: Executor | None = None) -> None:
-        """Observe, ask a policy, and plan its chunks, until cancelled or the lease ends.
+        """Observe, ask a policy, and plan its chunks until cancelled or the lease ends.
 
-        The policy is asked again as soon as what is planned lasts no longer than it may take to
-        answer: the 99th percentile of its latency so far, and two periods. It is never asked twice
-        at a time.
+        The policy is asked again as soon as the remaining plan lasts no longer than it may take to
+        answer: the 99th percentile of its latency so far, plus two periods. It is never asked twice
+        at the same time.
 
         After its first answer, before anything moves, its latency is compared with the duration of
-        its chunk: more than half of it is a warning, as actions will be missing. A policy slower
-        than its chunk is asked once more, as the first answer may have loaded or compiled
-        something, and raises if it is as slow again.
+        its chunk: if it exceeds half of that, a warning says that actions will be missing. A
+        policy slower than its chunk is asked once more, as the first answer may have included
+        loading or compiling; if it is too slow again, `run` raises.
 
         Args:
-            policy: Called with the values of an observation, a dict of arrays by feature, and if it
-                takes two arguments also with what is left over of its last chunk, from the time of
+            policy: Called with the values of an observation, a dict of arrays by feature; if it
+                takes two arguments, also with what is left over of its last chunk, from the time of
                 the observation on. Returns a chunk; see `plan`. A coroutine function is awaited.
             executor: Where a function is called, such as a ``ProcessPoolExecutor`` that spawns its
                 process; by default a thread of its own.
 
         Raises:
             PolicyTooSlowError: the policy takes longer than its chunk lasts; nothing was sent.
-            StaleError: an observation is too old, or missing (a TimeoutError).
+            StaleError: an observation is too old or missing (a TimeoutError).
             Exception: what the policy raised.
         """
         arguments = accepts(
@@ -362,7 +363,7 @@ class Actor:
         return end_ns is not None and self._clock.now_ns() < end_ns
 
     def _wants_more(self) -> bool:
-        """Return whether the policy has to be asked now, or its answer might come too late."""
+        """Return whether the policy has to be asked now so that its answer is not too late."""
         end_ns = self._plan.end_ns
         # One period until the next observation, and one to spare.
         ahead_ns = self.stats.latency.p99_ns + 2 * self._period_ns
@@ -371,7 +372,7 @@ class Actor:
     async def _ask(
         self, policy: Callable[..., Any], executor: Executor, given: tuple[Any, ...], at: Time
     ) -> None:
-        """Ask a policy, and plan its chunk; one that is too slow is told of before anything moves.
+        """Ask a policy and plan its chunk; report one that is too slow before anything moves.
 
         Raises:
             PolicyTooSlowError: it was too slow the second time.
@@ -382,7 +383,7 @@ class Actor:
         self._asked_ns = None
         if self.stats.sent == 0:
             if took_ns >= lasts_ns and not self._was_slow:
-                self._was_slow = True  # its first answer may have loaded or compiled something
+                self._was_slow = True  # the first answer may have included loading or compiling
                 return
             if took_ns >= lasts_ns:
                 raise PolicyTooSlowError(took_ns / S_TO_NS, lasts_ns / S_TO_NS)

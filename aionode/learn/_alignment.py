@@ -1,8 +1,8 @@
-"""Rows of a data set from the messages of topics: everything as of the time of a picture.
+"""Rows of a data set from the messages of topics: everything as of the time of an image.
 
-A grid of equal steps would show each picture at an age that depends on where the grid happens to
-begin, another one in each episode. So the messages of the reference make the rows, and what is too
-old for one drops it.
+On a grid of equal steps, the age of each image would depend on where the grid happens to
+begin, and differ between episodes. So each message of the reference makes a row, and a row is
+dropped if something in it is too old.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ __all__ = [
 ]
 
 LONGEST_GAP: Final = 1.5
-"""The periods from one row to the next up to which they belong to one episode."""
+"""Maximum periods between two rows of one episode."""
 
 LONGEST_SEC: Final = 2000.0
-"""The longest episode in seconds: readers compare times, which are 32-bit floats, to 0.1 ms."""
+"""Maximum seconds of an episode: readers compare times, 32-bit floats, to within 0.1 ms."""
 
 OTHER_CLOCK: Final = 1.0
-"""The seconds between stamp and arrival from which they are of two clocks."""
+"""Seconds between stamp and arrival from which they are taken to be from two clocks."""
 
 ROUNDING_NS: Final = 1000
-"""How much later a message may be and still count: periods are no whole nanoseconds."""
+"""How much late a message may be and still count: periods are not whole nanoseconds."""
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -51,11 +51,11 @@ class Series:
     Attributes:
         times: Their times in nanoseconds, by header or arrival.
         arrivals: When they arrived.
-        values: Their numbers, one row each; without columns for pictures.
-        ordinals: Their places among all messages of their topic.
-        is_captured: Whether the times are those in headers.
-        backwards: How many were left out because their times are out of order.
-        unstamped: How many have no time in their header, though others of the topic may.
+        values: Their numbers, one row each; no columns for images.
+        ordinals: Their positions among all messages of their topic.
+        is_captured: Whether the times come from headers.
+        backwards: How many were left out because their times were out of order.
+        unstamped: How many have no time in their header; others of the topic may have one.
         invalid: How many could not be read.
         problem: What was wrong with the first of these.
     """
@@ -76,7 +76,7 @@ class Series:
         return (self.arrivals.astype(np.float64) - self.times) / 1e9
 
     def only(self, is_kept: npt.NDArray[np.bool_]) -> Series:
-        """Return some of the messages, with the same counts of those that were left out."""
+        """Return some of the messages, with unchanged counts of those that were left out."""
         return replace(
             self,
             times=self.times[is_kept],
@@ -86,7 +86,7 @@ class Series:
         )
 
     def without(self, ordinals: list[int], problem: str) -> Series:
-        """Return the messages without some that turned out to be unreadable."""
+        """Return the messages without those that turned out to be unreadable."""
         found = self.only(~np.isin(self.ordinals, ordinals))
         return replace(found, invalid=self.invalid + len(ordinals), problem=self.problem or problem)
 
@@ -97,12 +97,13 @@ class Aligned:
 
     Attributes:
         times: The time of each row in nanoseconds.
-        chosen: For each entry, the place in its series of the message of each row.
+        chosen: For each entry, the position in its series of the message for each row.
         ages: For each entry, the age of that message in seconds.
         values: For each entry, the numbers of each row.
         starts: The first row of each episode.
-        references: The messages that could have made rows.
-        stale: For each entry, the rows that it dropped, alone or with others.
+        references: The number of messages that could have made rows.
+        stale: For each entry, the number of rows dropped because it, alone or with others, was too
+            old.
         gaps: The gaps between rows that are too long, in seconds.
     """
 
@@ -122,7 +123,7 @@ class Aligned:
 
 
 def aligned(contract: Contract, series: Sequence[Series]) -> Aligned:
-    """Return the rows that messages make.
+    """Return the rows made from messages.
 
     Args:
         contract: The contract.
@@ -161,11 +162,11 @@ def aligned(contract: Contract, series: Sequence[Series]) -> Aligned:
 
 
 def in_order(series: Series) -> Series:
-    """Return the messages whose times are in the order of their arrivals.
+    """Return the messages whose times are in the order in which they arrived.
 
-    A time that contradicts others is false if it is far from its arrival, as no other one of the
-    topic is: so one time in the future does not cost all messages after it. Of the rest, a message
-    is left out that is not after the one before.
+    A time that contradicts others is taken as wrong if it is further from its arrival than any
+    other of the topic, so that one time in the future does not cost all later messages. Of the
+    rest, messages that are not later than the one before are left out.
     """
     times = series.times
     if (np.diff(times) > 0).all():
@@ -182,12 +183,12 @@ def in_order(series: Series) -> Series:
 
 
 def max_age_of(contract: Contract, entry: Observation | Action) -> float:
-    """Return the age in seconds above which a message drops a row, with room for rounding."""
+    """Return the age in seconds above which a row is dropped, with room for rounding."""
     return contract.max_age(entry) + 1e-9
 
 
 def references(contract: Contract, times: Ints) -> Ints:
-    """Return the times that make rows: of a camera with twice the frames, every second one."""
+    """Return the times that make rows: every second one of a camera at twice the rate."""
     if len(times) < 2:
         return times
     step = float(np.median(np.diff(times)))
@@ -203,17 +204,17 @@ def references(contract: Contract, times: Ints) -> Ints:
 
 
 def pictures_per_row(rate_hz: float, fps: int) -> int:
-    """Return how many pictures of a camera there are for each row."""
+    """Return how many images of a camera there are per row."""
     return max(round(rate_hz / fps), 1)
 
 
 def sampled(
     series: Series, times: Ints, max_age: float, *, is_interpolated: bool
 ) -> tuple[Ints, Floats, Floats]:
-    """Return for each time the last message up to it: its place, its age in seconds, its numbers.
+    """Return for each time the last message up to it: its position, age in seconds and numbers.
 
-    Numbers are interpolated if the next message is not further away than `max_age` either. The age
-    is infinite without a message.
+    Numbers are interpolated if the next message is within `max_age` as well. The age
+    is infinite if there is no message.
     """
     count = len(series.times)
     if not count:
@@ -233,7 +234,7 @@ def sampled(
 
 
 def shortened(starts: list[int], count: int, longest: int) -> list[int]:
-    """Return the starts of episodes of which none has more than `longest` rows."""
+    """Return the starts of episodes, split so that none has more than `longest` rows."""
     return [
         first for start, end in pairwise([*starts, count]) for first in range(start, end, longest)
     ]

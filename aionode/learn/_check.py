@@ -1,4 +1,4 @@
-"""Compares a running robot with a contract: what is there, how often, and how old at a picture."""
+"""Compares a running robot with a contract: which topics, at what rate, and how old at an image."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 __all__ = ["Checked", "check"]
 
 SILENT_NS: Final = 500_000_000
-"""How long nothing may come of a topic that is observed, beyond its `max_age`."""
+"""How long an observed topic may be silent, beyond its `max_age`."""
 
 FLOOD_HZ: Final = 2000.0
-"""The rate from which a topic of a robot is a flood, if as many messages arrive."""
+"""The rate from which a topic counts as a flood, if there are also as many messages per row."""
 
 FLOOD_ROWS: Final = 10
-"""The messages for each row from which they count as many."""
+"""Messages per row from which a topic may count as a flood."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What a check of a robot has found.
+    """The findings of a check of a robot.
 
     Attributes:
         topics: The numbers of each topic of the contract.
-        text: What is there, in plain words.
-        problems: What does not fit, with what to do.
+        text: What is there, as text.
+        problems: What does not match, with what to do.
     """
 
     topics: list[dict[str, Any]]
@@ -50,10 +50,10 @@ class Checked:
 
 
 async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Checked:
-    """Listen to a running robot, and say what does not fit a contract.
+    """Listen to a running robot, and report what does not match a contract.
 
     Args:
-        node: A node that runs, and knows the graph.
+        node: A running node that already knows the graph.
         contract: The contract.
         duration_sec: How long to listen.
     """
@@ -118,9 +118,9 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
 
 
 def heard_together(contract: Contract, series: list[Series]) -> list[Series]:
-    """Return the messages with those of the reference only for which there could be all others.
+    """Return the messages, with only those references for which all others could be there.
 
-    What is slow to arrive is not missing, but at the ends of what was heard it seems to be.
+    What arrives late is not missing, but seems to be at both ends of the period.
     """
     heard = [each.times for each in series if len(each.times)]
     if not heard:
@@ -142,9 +142,9 @@ def take(
     source_ns: int,
     received_ns: int,
 ) -> None:
-    """Take a message of a subscription."""
+    """Take a message from a subscription."""
     clock = node.get_clock()
-    if clock.ros_time_is_active:  # of a simulation, as are the stamps
+    if clock.ros_time_is_active:  # simulated, as are the stamps
         received_ns = clock.now_ns()
     joined = b"".join(raw) if isinstance(raw, list) else bytes(raw)
     record = Record(info, received_ns, source_ns, sequence, joined)
@@ -156,7 +156,7 @@ def silence_of(node: Node, contract: Contract, collected: Collected, end_ns: int
     """Return whether an observed topic fell silent before the end, with what to do."""
     entry = collected.entry
     if entry in contract.actions or not collected.times or len(collected.times) < collected.count:
-        return []  # what did not fit is told already
+        return []  # mismatches have been reported already
     silent_ns = end_ns - collected.arrivals[-1]
     if silent_ns <= contract.max_age(entry) * S_TO_NS + SILENT_NS:
         return []
@@ -185,7 +185,7 @@ def problems_of(
     topic: dict[str, Any],
     publishers: list[EndpointInfo],
 ) -> list[str]:
-    """Return what does not fit about a topic, with what to do."""
+    """Return what does not match about a topic, with what to do."""
     name = node.resolve_topic_name(entry.topic)
     others = {each.type_name for each in publishers} - {entry.type}
     is_silent = not topic["messages"] and not topic["invalid"]
@@ -197,7 +197,7 @@ def problems_of(
         if types and entry.type not in types:
             return [f"{name}: the robot takes {', '.join(sorted(types))}, and not {entry.type}"]
         if types or publishers:
-            return []  # nobody demonstrates at the moment
+            return []  # nobody is demonstrating at the moment
     if not publishers:
         known = {each.name for each in node.graph.endpoints(EndpointKind.PUBLISHER)}
         near = difflib.get_close_matches(name, sorted(known), 1)

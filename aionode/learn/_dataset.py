@@ -1,8 +1,8 @@
-"""Data sets of LeRobot in its format v3.0, put together from episodes, and checked.
+"""Data sets in LeRobot's format v3.0: put together from episodes, and checked.
 
-What a reader demands, by LeRobot's own: columns of exactly the types of ``meta/info.json``,
-episodes numbered without gaps, times of exactly index / fps, and in each video a frame at each of
-them.
+LeRobot's own reader demands columns of exactly the types in ``meta/info.json``,
+episodes numbered without gaps, times of exactly index / fps, and a video frame at each of
+those times.
 """
 
 from __future__ import annotations
@@ -37,27 +37,27 @@ if TYPE_CHECKING:
 __all__ = ["INFO", "Episode", "check_dataset", "write_dataset"]
 
 INFO: Final = "meta/info.json"
-"""The file that is written last: with it, the data set is complete."""
+"""The file that is written last: a data set that has it is complete."""
 
 CHUNK: Final = 1000
-"""Files of a folder."""
+"""Maximum files in a folder."""
 
 DATA_MB: Final = 100
-"""The size from which the rows go on in another file."""
+"""The size of a file of rows after which another one begins."""
 
 DATA_PATH: Final = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 VIDEO_PATH: Final = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4"
 EPISODES_PATH: Final = "meta/episodes/chunk-000/file-000.parquet"
 
 TOLERANCE: Final = 1e-4
-"""How far a frame may be from the time of its row, in seconds."""
+"""Maximum seconds between a frame and the time of its row."""
 
 INDEXES: Final = ("frame_index", "episode_index", "index", "task_index")
 
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """An episode of a part.
+    """An episode of a part of a data set.
 
     Attributes:
         folder: The folder of the part.
@@ -77,9 +77,9 @@ class Episode:
 
 
 def write_dataset(out: Path, contract: Contract, episodes: list[Episode], codec: str) -> None:
-    """Put a data set together from episodes, in the order given.
+    """Put a data set together from episodes, in the given order.
 
-    What an interrupted export left is removed: it may be of other episodes.
+    Files left by an interrupted export are removed: they may be of other episodes.
     """
     (out / INFO).unlink(missing_ok=True)
     for name in ("data", "meta", "videos"):
@@ -99,7 +99,7 @@ def write_dataset(out: Path, contract: Contract, episodes: list[Episode], codec:
 
 
 def write_json(path: Path, content: object) -> None:
-    """Write a file that is either there with all of its content or not at all."""
+    """Write a file atomically: it has all of its content or does not exist."""
     new = path.with_name(f"{path.name}.new")
     new.write_text(json.dumps(content, indent=4))
     new.replace(path)
@@ -146,10 +146,10 @@ def features_of(contract: Contract, codec: str) -> dict[str, Any]:
 
 
 def video_feature(feature: Feature, fps: int, codec: str) -> dict[str, Any]:
-    """Return the entry of a feature of pictures."""
+    """Return the entry of an image feature."""
     is_depth = feature.kind == "depth"
     chosen = "depth" if is_depth else codec
-    channels = 1 if is_depth else 3  # greys are decoded to three equal channels
+    channels = 1 if is_depth else 3  # grey images are decoded to three equal channels
     info: dict[str, Any] = {
         "video.height": feature.shape[0],
         "video.width": feature.shape[1],
@@ -189,7 +189,7 @@ class Rows:
         self.writer: pq.ParquetWriter | None = None
 
     def add(self, number: int, episode: Episode) -> dict[str, Any]:
-        """Add the rows of an episode, and return where they are."""
+        """Add the rows of an episode, and return their location."""
         table = pq.read_table(episode.folder / episode.file)
         count = len(table)
         ends = self.first + count
@@ -229,7 +229,7 @@ class Rows:
 
 
 def link_videos(out: Path, number: int, episode: Episode, fps: int) -> dict[str, Any]:
-    """Put the videos of an episode in their places, and return what is to be known of them."""
+    """Put the videos of an episode in place, and return their metadata."""
     chunk, file = divmod(number, CHUNK)
     found: dict[str, Any] = {}
     for name, source in episode.videos.items():
@@ -238,7 +238,7 @@ def link_videos(out: Path, number: int, episode: Episode, fps: int) -> dict[str,
         place.unlink(missing_ok=True)
         try:
             os.link(episode.folder / source, place)
-        except OSError:  # a file system without links
+        except OSError:  # the file system has no links
             shutil.copyfile(episode.folder / source, place)
         found |= {
             f"videos/{name}/chunk_index": chunk,
@@ -250,7 +250,7 @@ def link_videos(out: Path, number: int, episode: Episode, fps: int) -> dict[str,
 
 
 def write_tasks(out: Path, tasks: list[str]) -> None:
-    """Write the tasks; readers expect their text as the index of pandas."""
+    """Write the tasks; readers expect their text as the pandas index."""
     table = pa.table({"task_index": pa.array(range(len(tasks)), pa.int64()), INDEX: tasks})
     columns = [
         {"name": "task_index", "field_name": "task_index", "pandas_type": "int64",
@@ -271,7 +271,7 @@ def write_tasks(out: Path, tasks: list[str]) -> None:
 
 
 INDEX: Final = "__index_level_0__"
-"""What pandas calls the column of an index without a name."""
+"""The name that pandas gives the column of an unnamed index."""
 
 
 def write_episodes(out: Path, episodes: list[Episode], listed: list[dict[str, Any]]) -> None:
@@ -293,7 +293,7 @@ def write_episodes(out: Path, episodes: list[Episode], listed: list[dict[str, An
 
 
 def merged(stats: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the statistics of all episodes; of the quantiles, bounds, as LeRobot has them."""
+    """Return the statistics of all episodes; for quantiles, bounds as in LeRobot."""
     stacked = {name: np.array([each[name] for each in stats], np.float64) for name in stats[0]}
     counts = stacked["count"].reshape(len(stats), *[1] * (stacked["mean"].ndim - 1))
     total = counts.sum()
@@ -313,7 +313,7 @@ def merged(stats: list[dict[str, Any]]) -> dict[str, Any]:
 def merged_indexes(
     listed: list[dict[str, Any]], tasks: list[str], episodes: list[Episode]
 ) -> dict[str, Any]:
-    """Return the statistics of the columns that only the whole has."""
+    """Return the statistics of the columns that only the whole data set has."""
     counts = np.array([each.rows for each in episodes])
     values = {
         "episode_index": np.repeat(np.arange(len(episodes)), counts),
@@ -337,10 +337,10 @@ def merged_indexes(
 
 
 def check_dataset(out: str | os.PathLike[str]) -> list[str]:
-    """Read a data set back, and return what LeRobot's reader would stumble over; nothing is good.
+    """Read a data set back, and return what would break LeRobot's reader; empty if nothing does.
 
-    It checks more than that one does: that a video has exactly as many frames as its episode rows,
-    without which all later pictures would belong to other rows.
+    It checks more than that reader: that a video has exactly as many frames as its episode has
+    rows, as otherwise all later images would belong to other rows.
     """
     out = Path(out)
     try:
@@ -366,7 +366,7 @@ def check_info(
     rows: pa.Table,
     stats: dict[str, Any],
 ) -> Iterator[str]:
-    """Yield what does not agree with the totals and names of ``info.json``."""
+    """Yield what disagrees with the totals and names in ``info.json``."""
     if info["codebase_version"] != "v3.0":
         yield f"{INFO}: codebase_version {info['codebase_version']}"
     for name, count in (("episodes", len(episodes)), ("frames", len(rows)), ("tasks", len(tasks))):
@@ -388,7 +388,7 @@ def check_info(
 
 
 def check_columns(info: dict[str, Any], rows: pa.Table) -> Iterator[str]:
-    """Yield the columns that are not what ``info.json`` says."""
+    """Yield the columns that do not match ``info.json``."""
     wanted = {
         name: pa.list_(pa.type_for_alias(DTYPES[each["dtype"]]), each["shape"][0])
         if each["shape"] != [1]
@@ -406,13 +406,13 @@ def check_columns(info: dict[str, Any], rows: pa.Table) -> Iterator[str]:
 
 
 DTYPES: Final = {"float32": "float", "float64": "double", "int64": "int64"}
-"""The names of types in Arrow."""
+"""The names of types as Arrow spells them."""
 
 
 def check_rows(
     info: dict[str, Any], episodes: list[dict[str, Any]], rows: pa.Table
 ) -> Iterator[str]:
-    """Yield where numbering or times are not as readers compute them."""
+    """Yield where numbers or times differ from those that readers compute."""
     numbers = {name: rows[name].to_numpy() for name in (*INDEXES, "timestamp")}
     if not np.array_equal(numbers["index"], np.arange(len(rows))):
         yield "data: index does not count the rows"

@@ -1,4 +1,4 @@
-"""The entries of a contract: one topic each, and the numbers or pictures in its messages."""
+"""The entries of a contract: one topic each, and the numbers or images in its messages."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ Array: TypeAlias = "npt.NDArray[Any]"
 IMAGES: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 
 MOST_NUMBERS: Final = 10_000
-"""Maximum numbers of a feature."""
+"""Maximum count of numbers in a feature."""
 
 FEATURE: Final = re.compile(r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*")
-"""What a feature's name may be; it becomes a folder and a column."""
+"""The pattern of a feature's name, which becomes a folder and a column."""
 
 OWN: Final = (
     "age",
@@ -51,19 +51,19 @@ OWN: Final = (
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What observations and actions have in common: a topic, and the numbers in its messages.
+    """The base of observations and actions: a topic, and the numbers in its messages.
 
     Attributes:
         feature: The name of the feature in the data set, such as ``observation.state``.
         topic: The topic.
         type: The message type, such as ``sensor_msgs/msg/JointState``.
         fields: The path of each number in the message, such as ``position.shoulder``.
-        names: The name of each number; without them, the paths.
-        unit: The unit of the numbers, such as ``rad``; for people.
-        max_age: The age in seconds up to which a message counts; without it, 1.5 periods.
-        resample: Whether a number between two messages is computed from both, or is that of the
-            earlier one; without it, floating-point numbers of observations are interpolated.
-        stamp: The time of a message: that in its header, or that of its arrival; without it, the
+        names: The name of each number; by default, the paths.
+        unit: The unit of the numbers, such as ``rad``, for human readers.
+        max_age: The age in seconds up to which a message counts; by default, 1.5 periods.
+        resample: Whether a number between two messages is interpolated, or is that of the
+            earlier one; by default, floating-point numbers of observations are interpolated.
+        stamp: The time of a message: that in its header, or that of its arrival; by default, the
             header's if there is one.
     """
 
@@ -78,7 +78,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     stamp: Literal["", "capture", "receive"] = ""
 
     def __post_init__(self) -> None:
-        """Check the entry, and put in what was left out."""
+        """Check the entry, and fill in defaults."""
         if not FEATURE.fullmatch(self.feature) or self.feature in OWN:
             raise ValueError(
                 f"feature: {self.feature!r}; letters, digits, _, - and dots fit, as in "
@@ -101,7 +101,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             raise ValueError(f"stamp: {self.type} has no header with a time; receive fits")
 
     def check_fields(self) -> None:
-        """Raise ValueError for a path that is not in the message."""
+        """Raise ValueError for a path that the message does not have."""
         if not self.fields:
             raise ValueError(f"fields: none; paths in {self.type} fit, such as {self.example}")
         if len(self.fields) > MOST_NUMBERS:
@@ -168,9 +168,9 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return found
 
     def time_of(self, message: Any, received: int) -> int:
-        """Return the time of a message in nanoseconds, by its header or its arrival.
+        """Return the time of a message in nanoseconds, from its header or of its arrival.
 
-        A header without a time, which is 0, counts as one that is not there.
+        A header whose time is 0 counts as having none.
         """
         if not self.is_captured:
             return received
@@ -179,11 +179,11 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A topic that a policy observes: numbers of its messages, or pictures.
+    """A topic that a policy observes: numbers in its messages, or images.
 
     Attributes:
-        image: ``color``, ``mono`` or ``depth`` if messages are pictures; None for numbers.
-        height: The height of the pictures in pixels.
+        image: ``color``, ``mono`` or ``depth`` if messages are images; None for numbers.
+        height: The height of the images in pixels.
         width: Their width.
     """
 
@@ -192,7 +192,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
     width: int = 0
 
     def check_fields(self) -> None:
-        """Raise ValueError for a path that is not in the message, or a picture without a size."""
+        """Raise ValueError for a path that the message lacks, or an image without a size."""
         if self.image is None:
             if self.type in IMAGES:
                 raise ValueError("image: none; color, mono or depth fits for pictures")
@@ -211,27 +211,27 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def is_interpolated(self) -> bool:
-        """Whether a value between two messages is computed from both."""
+        """Whether a value between two messages is interpolated."""
         return self.resample == "interpolate" or (
             not self.resample and self.image is None and self.has_floats
         )
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of a value: of a picture, rows, columns and, in colour, three channels."""
+        """The shape of a value: for an image, rows, columns and, in colour, three channels."""
         if self.image is None:
             return (len(self.paths),)
         size = (self.height, self.width)
         return (*size, 3) if self.image == "color" else size
 
     def value(self, message: Any) -> Array:
-        """Return what a message shows: float32 numbers, or the pixels of a picture.
+        """Return the value of a message: float32 numbers, or the pixels of an image.
 
-        Pictures are uint8, in colour red, green and blue; depths are float32 metres, where 0 and
+        Images are uint8, in colour red, green and blue; depths are float32 metres, where 0 and
         NaN are unknown.
 
         Raises:
-            MessageError: the message lacks a number, or is no such picture (a ValueError).
+            MessageError: the message lacks a number, or is not such an image (a ValueError).
         """
         if self.image is None:
             return super().value(message)
@@ -251,12 +251,12 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A topic that a policy commands.
 
     Attributes:
-        lower: The least value of each number, or one for all; without it, none.
-        upper: The greatest value of each number, or one for all.
-        stop: What stops the robot: ``zero`` in all numbers, ``hold`` for the last command again,
+        lower: The lower limit of each number, or one for all; by default, none.
+        upper: The upper limit of each number, or one for all; by default, none.
+        stop: What stops the robot: ``zero`` for all numbers, ``hold`` for the last command again,
             or the fields of a message.
         template: The other fields of the message, such as ``{header: {frame_id: base}}``.
-        lease_sec: How long after the last command the stop is sent.
+        lease_sec: How long after the last command the stop is sent, in seconds.
     """
 
     stop: Literal["zero", "hold"] | dict[str, Any]
@@ -283,7 +283,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def is_interpolated(self) -> bool:
-        """Whether a value between two messages is computed from both."""
+        """Whether a value between two messages is interpolated."""
         return self.resample == "interpolate"
 
     @property
@@ -293,7 +293,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """The least and the greatest value of each number."""
+        """The lower and the upper limit of each number."""
         lower, upper = (
             np.broadcast_to(np.array(limit, np.float64), self.shape)
             for limit in (self.lower, self.upper)
@@ -301,10 +301,10 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return lower, upper
 
     def clamped(self, values: Array) -> tuple[Array, int]:
-        """Return values within the limits, and how many of them were not.
+        """Return the values clamped to the limits, and how many were outside them.
 
         Raises:
-            ContractError: they are not as many as the numbers, or not finite (a ValueError).
+            ContractError: there are too few or too many, or some are not finite (a ValueError).
         """
         given = np.asarray(values, np.float64)
         if given.shape != self.shape or not np.isfinite(given).all():
@@ -325,7 +325,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
             stamp: The time for the header, a ``builtin_interfaces/msg/Time``, if it has one.
 
         Raises:
-            ContractError: they are not as many as the numbers, or not finite (a ValueError).
+            ContractError: there are too few or too many, or some are not finite (a ValueError).
         """
         inside, _ = self.clamped(values)
         return self.stamped(self.filled(inside.tolist()), stamp)
@@ -338,8 +338,8 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Return the message that stops the robot.
 
         Args:
-            last: The last command, which ``stop: hold`` sends again; None if there was none: then
-                there is nothing to hold, and the result is None.
+            last: The last command, which ``stop: hold`` sends again; without one,
+                there is nothing to hold and the result is None.
         """
         if self.stop == "hold":
             return last
@@ -350,7 +350,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return filled(self.message_type, self.paths, values, self.template)
 
     def stamped(self, message: Any, stamp: Any) -> Any:
-        """Put a time into the header of a message that has one."""
+        """Set the time in the header of a message that has one."""
         if stamp is not None and self.has_header:
             message.header.stamp = stamp
         return message
@@ -366,7 +366,7 @@ def pixels_of(message: Any, kind: str) -> Array:
     """Return the pixels of an Image: uint8 colours or greys, or float32 depths in metres.
 
     Raises:
-        MessageError: it cannot be shown so (a ValueError).
+        MessageError: its encoding cannot be converted (a ValueError).
     """
     encoding = {"color": "rgb8", "mono": "mono8", "depth": "passthrough"}[kind]
     try:

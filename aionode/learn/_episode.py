@@ -1,4 +1,4 @@
-"""Turns one bag into its part of a data set: episodes, in a folder of their own."""
+"""Converts one bag to a part of a data set: its episodes, in a folder of their own."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 __all__ = ["PART", "Job", "contract_in", "run"]
 
 PART: Final = "part.json"
-"""The file that says that a part is complete."""
+"""The file that marks a part as complete."""
 
 WAITING: Final = 4
-"""Pictures that may wait for their encoder."""
+"""Maximum images that wait for their encoder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +46,8 @@ class Job:
     Attributes:
         path: The bag.
         contract: The contract, as plain values.
-        folder: Where the part goes.
-        task: The task; empty for that of the bag or of the contract.
+        folder: The folder of the part.
+        task: The task; empty to use that of the bag or of the contract.
         codec: ``h264`` or ``av1``.
         threads: Threads of each encoder.
     """
@@ -61,7 +61,7 @@ class Job:
 
 
 def contract_in(opened: Bag) -> Contract | None:
-    """Return the contract that an episode was recorded with, if its bag has one.
+    """Return the contract with which an episode was recorded, if its bag has one.
 
     Raises:
         ContractError: it is not valid (a ValueError).
@@ -77,14 +77,14 @@ def contract_in(opened: Bag) -> Contract | None:
 
 
 def run(job: Job, tell: Callable[[int], None]) -> dict[str, Any]:
-    """Export a bag, and return what its part has: episodes, and a report.
+    """Export a bag, and return the content of its part: episodes, and a report.
 
     Args:
         job: What to do.
-        tell: Called with the number of messages that were read, to show progress.
+        tell: Called with the number of messages read so far, to show progress.
 
     Raises:
-        BagError: it is no bag (a ValueError).
+        BagError: it is not a bag (a ValueError).
         DatasetError: it has no task (a ValueError).
     """
     contract = Contract.from_dict(job.contract, job.path)
@@ -123,10 +123,10 @@ def encoded(
     series: list[Series],
     tell: Callable[[int], None],
 ) -> tuple[Aligned, list[Camera]]:
-    """Return the rows of a bag, after their pictures were written.
+    """Write the images of a bag, and return its rows.
 
-    Whether a picture can be read is known once it is encoded. If one cannot, the rows are made
-    again without it: no other picture stands for it, whose age would be another one.
+    Only encoding shows whether an image can be read. If one cannot, the rows are made
+    again without it: another image in its place would have another age.
     """
     while True:
         rows = aligned(contract, series)
@@ -142,14 +142,14 @@ def encoded(
 
 
 class Camera:
-    """The pictures of one feature, on their way into the videos of the episodes.
+    """The images of one feature, on their way into the videos of the episodes.
 
     Attributes:
         entry: The observation.
-        wanted: The ordinal of the message of each row that is in an episode, with its episode.
+        wanted: The ordinal of the message for each row of an episode, with that episode.
         files: The video of each episode.
         stats: The statistics of each.
-        unreadable: The ordinals of pictures that could not be read.
+        unreadable: The ordinals of images that could not be read.
         problem: What was wrong with the first of these.
     """
 
@@ -163,12 +163,12 @@ class Camera:
         self.job = job
         self.queue: queue.Queue[tuple[int, Record] | None] = queue.Queue(WAITING)
         self.count = 0
-        """Messages of the topic that the reader has seen."""
+        """The number of messages of the topic that the reader has seen."""
         self.next = deque(ordinal for ordinal, _ in wanted)
         """What the reader still has to pass on."""
 
     def passes(self, record: Record, encoding: Future[None]) -> None:
-        """Pass a message on to the encoder, if a row shows it."""
+        """Pass a message on to the encoder if it is in a row."""
         ordinal, self.count = self.count, self.count + 1
         if not self.next or self.next[0] != ordinal:
             return
@@ -186,7 +186,7 @@ class Camera:
             return
 
     def encode(self) -> None:
-        """Write the videos, in a thread: encoders and decoders let go of the interpreter."""
+        """Write the videos, in a thread: encoders and decoders release the GIL."""
         with ExitStack() as stack:
             writer: VideoWriter | None = None
             while (item := self.queue.get()) is not None:
@@ -197,7 +197,7 @@ class Camera:
                     self.unreadable.append(ordinal)
                     self.problem = self.problem or str(error)
                 if self.unreadable:
-                    continue  # the rows are made again
+                    continue  # the rows will be made again
                 frame = None
                 while self.wanted and self.wanted[0][0] == ordinal:
                     _, episode = self.wanted.popleft()
@@ -220,12 +220,12 @@ class Camera:
 
     @property
     def is_depth(self) -> bool:
-        """Whether its pictures are depths."""
+        """Whether its images are depths."""
         return self.entry.image == "depth"
 
 
 def cameras_of(contract: Contract, rows: Aligned, series: list[Series], job: Job) -> list[Camera]:
-    """Return the cameras of a contract, with the messages that the rows show."""
+    """Return the cameras of a contract, with the messages that are in rows."""
     found = []
     for position, entry in enumerate(contract.observations):
         if entry.image is None:
@@ -241,7 +241,7 @@ def cameras_of(contract: Contract, rows: Aligned, series: list[Series], job: Job
 
 
 def fill(opened: Bag, cameras: list[Camera], tell: Callable[[int], None]) -> None:
-    """Read the pictures once, and encode those of each camera in a thread of its own."""
+    """Read the images once, and encode those of each camera in a thread of its own."""
     wanted = [each for each in cameras if each.next]
     if not wanted:
         return
@@ -268,7 +268,7 @@ def fill(opened: Bag, cameras: list[Camera], tell: Callable[[int], None]) -> Non
 def episode_of(
     contract: Contract, rows: Aligned, cameras: list[Camera], number: int, folder: Path
 ) -> dict[str, Any]:
-    """Write the numbers of one episode, and return what is to be known of it."""
+    """Write the numbers of one episode, and return its metadata."""
     span = slice(rows.starts[number], rows.ends[number])
     columns = columns_of(contract, rows, span)
     file = folder / f"rows-{number:03d}.parquet"
@@ -284,7 +284,7 @@ def episode_of(
 
 
 def columns_of(contract: Contract, rows: Aligned, span: slice) -> dict[str, Array]:
-    """Return the numbers of an episode by name, one row for each picture."""
+    """Return the numbers of an episode by name, one row for each image."""
     entries = contract.entries
     columns: dict[str, Array] = {}
     for name, feature in contract.features.items():
@@ -308,7 +308,7 @@ def arrow_of(values: Array) -> pa.Array:
 
 
 def statistics(values: Array) -> dict[str, list[float]]:
-    """Return the statistics of the columns of numbers, as readers normalize by them."""
+    """Return the statistics of the numeric columns, which readers normalize with."""
     given = values.astype(np.float64)
     found = {
         "min": given.min(0),

@@ -1,4 +1,4 @@
-"""From recorded episodes to a data set of LeRobot: `export`."""
+"""Converts recorded episodes to a data set of LeRobot: `export`."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 __all__ = ["Exported", "Limits", "export"]
 
 PARTS: Final = ".parts"
-"""The folder with what is exported so far, from which an export goes on."""
+"""The folder of what has been exported so far, from which an export resumes."""
 
 REPORT: Final = "meta/report.json"
 
 TOLD_SEC: Final = 0.2
-"""How often processes are asked for their progress."""
+"""The interval at which the progress of processes is read."""
 
 TOLD_MESSAGES: Final = 100
-"""After how many messages a process tells its progress."""
+"""The number of messages after which a process reports its progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +48,11 @@ class Exported:
 
     Attributes:
         path: Its folder.
-        episodes: How many episodes it has.
-        rows: How many rows.
-        reports: What became of the messages of each bag, as numbers.
-        problems: What is over the limits, by bag.
-        fps: The frames of a second.
+        episodes: The number of its episodes.
+        rows: The number of its rows.
+        reports: The report of each bag, as numbers.
+        problems: What exceeds the limits, by bag.
+        fps: The frames per second.
         limits: The limits.
     """
 
@@ -66,7 +66,7 @@ class Exported:
 
     @property
     def text(self) -> str:
-        """The report in plain words."""
+        """The report as text."""
         lines = [text_of(report, self.limits, self.fps) for report in self.reports]
         bad = f"; over the limits: {counted(len(self.problems), 'bag')}" if self.problems else ""
         whole = f"{self.path}: {counted(self.episodes, 'episode')}, {self.rows} rows"
@@ -88,23 +88,23 @@ def export(
 ) -> Exported:
     """Convert episodes to a data set of LeRobot, format v3.0.
 
-    Each picture of the contract's reference is a row, and everything else is as of its time. An
-    export that was interrupted goes on with the episodes that are missing, if it is called again
+    Each image of the contract's reference is a row, and everything else is as of its time. An
+    export that was interrupted resumes with the missing episodes if it is called again
     with the same arguments.
 
     Args:
         out: The folder of the data set.
-        bags: The bags of the episodes, in order; a folder of bags stands for those in it.
+        bags: The bags of the episodes, in order; a folder stands for all bags in it.
         contract: The contract; by default, that of the recording.
         task: The task of all episodes; by default, that of each recording.
-        codec: ``h264``, or ``av1``: smaller, and three times as much work.
-        jobs: Bags to convert at the same time; 0 for as many as the processors can do.
+        codec: ``h264``, or ``av1``, which is smaller and takes three times as much work.
+        jobs: Maximum bags to convert at the same time; 0 to choose by the number of processors.
         failures: Whether to also convert episodes that ended as failures.
         limits: What may be wrong before it counts as a problem.
-        progress: Called with the messages read so far, and all that are to be read.
+        progress: Called with the messages read so far, and the total.
 
     Raises:
-        BagError: one of them is no bag, or is being recorded (a ValueError).
+        BagError: one of them is not a bag, or is being recorded (a ValueError).
         ContractError: a contract is not valid (a ValueError).
         DatasetError: the folder has a data set or other files, no contract fits, no bag has a row,
             or the data set cannot be read back (a ValueError).
@@ -157,7 +157,7 @@ def complete(
     codec: str,
     reports: list[dict[str, Any]],
 ) -> None:
-    """Put a data set together, and read it back; then its parts are not needed any more.
+    """Put a data set together and read it back; its parts are no longer needed then.
 
     Raises:
         DatasetError: it cannot be read back (a ValueError).
@@ -172,10 +172,10 @@ def complete(
 
 
 def check_place(place: Path) -> None:
-    """Raise the error for a folder that is not for this data set.
+    """Raise an error for a folder that cannot take this data set.
 
     Raises:
-        DatasetError: it has a data set, or files that no interrupted export left (a ValueError).
+        DatasetError: it has a data set, or files that no export has left there (a ValueError).
     """
     if place.exists() and not place.is_dir():
         raise DatasetError(str(place), "a file has this name", "give another one")
@@ -191,7 +191,7 @@ def lock_of(place: Path) -> FolderLock:
     """Return a lock that keeps other exports out of a folder.
 
     Raises:
-        DatasetError: another one is at work (a ValueError).
+        DatasetError: another one is running (a ValueError).
     """
     (place / PARTS).mkdir(parents=True, exist_ok=True)
     try:
@@ -217,13 +217,13 @@ def is_bag(folder: Path) -> bool:
 
 
 def repair(path: Path) -> int:
-    """Close the bag of a recorder that was killed; all but the last second is there.
+    """Close the bag of a recorder that was killed; all but its last second is there.
 
     Returns:
         The bytes that could not be saved.
 
     Raises:
-        BagError: it is damaged otherwise, or is being recorded (a ValueError).
+        BagError: it is damaged in another way, or is being recorded (a ValueError).
     """
     try:
         bag.open(path).close()
@@ -233,16 +233,16 @@ def repair(path: Path) -> int:
 
 
 def failed(path: Path) -> bool:
-    """Return whether the episode of a bag ended as a failure."""
+    """Return whether the episode in a bag ended as a failure."""
     with bag.open(path) as opened:
         return opened.custom_data.get(OUTCOME_KEY) in {FAILURE, "discarded"}
 
 
 def common_contract(bags: Sequence[Path]) -> Contract:
-    """Return the contract that all bags were recorded with.
+    """Return the contract with which all bags were recorded.
 
     Raises:
-        DatasetError: one has none, or another one (a ValueError).
+        DatasetError: one has none, or a different one (a ValueError).
     """
     found: Contract | None = None
     for path in bags:
@@ -263,7 +263,7 @@ def common_contract(bags: Sequence[Path]) -> Contract:
 
 
 def check_sizes(contract: Contract) -> None:
-    """Raise the error for pictures that no video can have.
+    """Raise an error for images of a size that no video can have.
 
     Raises:
         DatasetError: a height or width is odd (a ValueError).
@@ -278,7 +278,7 @@ def check_sizes(contract: Contract) -> None:
 
 
 def job_of(place: Path, path: str, contract: Contract, task: str, codec: str, threads: int) -> Job:
-    """Return the job for a bag; its folder is named after all that makes a difference to it."""
+    """Return the job for a bag, whose folder is named after everything that affects its content."""
     given = contract.to_dict()
     files = sorted(Path(path).rglob("*")) if Path(path).is_dir() else [Path(path)]
     marks = [
@@ -296,7 +296,7 @@ def job_of(place: Path, path: str, contract: Contract, task: str, codec: str, th
 def done(
     planned: list[Job], jobs: int, progress: Callable[[int, int], None] | None
 ) -> Iterator[dict[str, Any]]:
-    """Do what is not done yet, and yield the parts of all, in order."""
+    """Do the jobs that are not done yet, and yield the parts of all, in order."""
     missing = [job for job in planned if read_part(job) is None]
     whole = sum(map(messages_of, missing)) if progress else 0
     count = 0
@@ -329,7 +329,7 @@ def read_part(job: Job) -> dict[str, Any] | None:
 
 
 def messages_of(job: Job) -> int:
-    """Return how many messages of a bag are to be read: pictures twice."""
+    """Return how many messages of a bag will be read, images twice."""
     contract = Contract.from_dict(job.contract)
     pictures = {full_name(each.topic) for each in contract.observations if each.image}
     topics = {full_name(name) for name in contract.topics}
@@ -342,11 +342,11 @@ def messages_of(job: Job) -> int:
 
 
 def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None]) -> None:
-    """Do several jobs at the same time, each in a process of its own.
+    """Run several jobs at the same time, each in a process of its own.
 
     Raises:
         BagError, ContractError, DatasetError: as `run`, or a process was killed; what is done by
-            then stays.
+            then is kept.
     """
     context = multiprocessing.get_context("spawn")
     told = context.SimpleQueue()
@@ -375,11 +375,11 @@ def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None])
 
 
 class Told:
-    """Where a process of the pool tells its progress.
+    """Where a process of the pool reports its progress.
 
     Attributes:
         queue: Its queue to the main process.
-        count: What it has not told yet.
+        count: What it has not reported yet.
     """
 
     queue: Any = None
@@ -392,7 +392,7 @@ def tell_by(queue: Any) -> None:
 
 
 def run_and_tell(job: Job) -> None:
-    """Do a job in a process of the pool."""
+    """Run a job in a process of the pool."""
 
     def tell(read: int) -> None:
         Told.count += read

@@ -1,8 +1,8 @@
 """Numbers within messages, by paths such as ``linear.x``, ``data.0`` and ``position.shoulder``.
 
-After an array comes an index, or the name of an element, if the message lists the names of its
-elements as JointState (``name``) and JointTrajectory (``joint_names``) do: such messages may have
-their elements in any order, and in another one each time.
+An array is followed by an index, or by the name of an element if the message lists the names of
+its elements, as JointState (``name``) and JointTrajectory (``joint_names``) do. The elements of
+such messages may be in any order, and in a different one each time.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def check_path(cls: Any, path: str) -> FieldType:
     """Return the type of the numbers at a path of a message class.
 
     Raises:
-        ValueError: there can be none.
+        ValueError: there cannot be any.
     """
     here: type[Message] | None = cls
     array: FieldType | None = None
@@ -111,7 +111,7 @@ def lacks(message: Message, path: str, problem: str) -> NoReturn:
 def filled(
     cls: Any, paths: tuple[str, ...], values: list[float], template: dict[str, Any]
 ) -> Message:
-    """Create a message with numbers at paths; the template has its other fields.
+    """Create a message with numbers at paths; other fields are taken from the template.
 
     Elements given by name are put in the order of the paths, with their names beside them.
 
@@ -129,7 +129,7 @@ def filled(
 
 
 def copied(value: Any) -> Any:
-    """Return builtin values with mappings and lists of their own."""
+    """Return a copy of builtin values, with its own mappings and lists."""
     if isinstance(value, dict):
         return {key: copied(each) for key, each in value.items()}
     return [copied(each) for each in value] if isinstance(value, list) else value

@@ -1,4 +1,4 @@
-"""Inference off the event loop: in a thread, or in the executor that a program brings."""
+"""Inference off the event loop: in a thread, or in the program's executor."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Call = tuple[Future[Any], "Callable[[], Any]"]
 
 
 class InferenceThread(Executor):
-    """One daemon thread: a policy that hangs keeps neither the block nor the program from ending.
+    """One daemon thread, so that a policy that hangs does not keep block or program from ending.
 
-    Always the same thread, as libraries with a device like it.
+    It is always the same thread, as some libraries with a device require.
     """
 
     def __init__(self) -> None:
@@ -36,7 +36,7 @@ class InferenceThread(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002
-        """End the thread after the calls that were submitted; never wait for it."""
+        """End the thread after the calls already submitted; never wait for it."""
         self._calls.put(None)
 
     def _run(self) -> None:
@@ -51,18 +51,18 @@ class InferenceThread(Executor):
 
 
 async def infer(policy: Callable[..., Any], executor: Executor, *args: Any) -> Any:
-    """Return what a policy answers; cancelling abandons a call that hangs.
+    """Return a policy's answer; cancelling abandons a call that hangs.
 
     Args:
         policy: A function, called by the executor, or a coroutine function, which is awaited.
         executor: Where it runs.
-        args: What it is called with.
+        args: The arguments of the call.
     """
     if inspect.iscoroutinefunction(policy):
         return await policy(*args)
     loop = asyncio.get_running_loop()
     calls, ended = thread_calls(loop), loop.create_future()
-    calls.add(ended)  # tests that step the clock wait for it
+    calls.add(ended)  # tests that step the clock wait for this
     try:
         return await loop.run_in_executor(executor, policy, *args)
     finally:

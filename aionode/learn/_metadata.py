@@ -1,4 +1,4 @@
-"""What the metadata of an episode's bag has."""
+"""The keys of the metadata in an episode's bag."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Final
 __all__ = ["CONTRACT_KEY", "FAILURE", "OUTCOME_KEY", "TASK_KEY"]
 
 TASK_KEY: Final = "task"
-"""What was shown, in words."""
+"""What was demonstrated, in words."""
 
 CONTRACT_KEY: Final = "contract"
 """The contract, as JSON."""
 
 OUTCOME_KEY: Final = "outcome"
-"""How it ended: ``success`` or ``failure``; there is none if its recorder was killed."""
+"""How it ended: ``success`` or ``failure``; missing if its recorder was killed."""
 
 FAILURE: Final = "failure"
-"""The outcome of an episode that an export leaves out."""
+"""The outcome with which an export leaves an episode out."""

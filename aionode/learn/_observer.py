@@ -1,4 +1,4 @@
-"""What a robot shows at a time: the value of each feature of a contract."""
+"""Observations of a robot: the value of each feature of a contract at a time."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 __all__ = ["Observations", "Seen"]
 
 START_SEC: Final = 5.0
-"""How long every topic may take to be heard at first."""
+"""How long each topic may take until its first message."""
 
 KEPT_NS: Final = 1_000_000_000
 """How far the stamps of a topic may run ahead of those of the reference."""
 
 KEPT: Final = 2_000
-"""How many messages of a topic are kept at most."""
+"""Maximum messages kept of a topic."""
 
 NEXT: Final = 0.75
-"""The shortest time between two observations, as a part of their period: cameras jitter."""
+"""The minimum time between two observations, as a fraction of their period: cameras jitter."""
 
 
 class History:
@@ -44,7 +44,7 @@ class History:
         self.messages: list[Any] = []
 
     def add(self, time_ns: int, message: Any) -> None:
-        """Keep a message, and forget those that no reference will ask for."""
+        """Keep a message, and forget those that no reference will need."""
         index = bisect_right(self.times, time_ns)
         self.times.insert(index, time_ns)
         self.messages.insert(index, message)
@@ -58,7 +58,7 @@ class History:
         return None if index < 0 else time_ns - self.times[index]
 
     def value(self, entry: Observation, time_ns: int) -> Array:
-        """Return what an entry shows at a time, for which there is a message before it."""
+        """Return the value of an entry at a time that is not before its first message."""
         index = bisect_right(self.times, time_ns) - 1
         value = entry.value(self.messages[index])
         if not entry.is_interpolated or index + 1 == len(self.times):
@@ -69,12 +69,12 @@ class History:
 
 
 class Seen:
-    """What a robot showed at one time.
+    """An observation of a robot at one time.
 
     Attributes:
         at: The time, by the node's clock: that of a message of the reference topic.
         values: The array of each feature by its name, as in the rows of a data set. Those of
-            pictures may be views of a message, and read-only.
+            images may be read-only views of a message.
         age: How old each feature was then, in seconds.
     """
 
@@ -91,7 +91,7 @@ class Seen:
 
 
 class Observations:
-    """What a robot shows now. Created by `Contract.observe`, for ``async with``.
+    """Observations of a running robot. Created by `Contract.observe`, for ``async with``.
 
     It subscribes to the observed topics while the block is open, best effort, which fits every
     publisher.
@@ -113,10 +113,10 @@ class Observations:
         self._limits = {entry.topic: max_age(entry) for entry in entries}
         self._histories = {entry.topic: History() for entry in entries}
         self._reference = self._histories[self._topic]
-        self._arrived = asyncio.Event()  # something of the reference topic
+        self._arrived = asyncio.Event()  # a message of the reference topic
         self._began_ns = 0
-        self._last_ns: int | None = None  # the reference that was looked at last
-        self._is_complete = False  # whether there was an observation
+        self._last_ns: int | None = None  # the last reference that was used
+        self._is_complete = False  # whether there has been an observation
         self._subscriptions: list[Subscription[Any]] = []
 
     async def __aenter__(self) -> Self:
@@ -148,17 +148,17 @@ class Observations:
             self._arrived.set()
 
     async def at(self, frequency: float | None = None) -> AsyncGenerator[Seen, None]:
-        """Yield what the robot shows at each message of the reference topic.
+        """Yield an observation at each message of the reference topic.
 
-        Everything else is as of the time of that message. What came while the program was busy is
-        left out: the next observation is the newest one.
+        Everything else is as of the time of that message. Messages that arrived while the program
+        was busy are skipped: the next observation is the newest one.
 
         Args:
-            frequency: How many a second at most; by default as many as the contract has frames.
+            frequency: Maximum observations per second; by default, the contract's `fps`.
 
         Raises:
-            StaleError: something is older than its `max_age`, or was not heard within 5 s (a
-                TimeoutError). Another ``async for`` goes on.
+            StaleError: a topic is older than its `max_age`, or silent for the first 5 s (a
+                TimeoutError). Another ``async for`` continues.
             MessageError: a message does not fit the contract (a ValueError).
         """
         apart_ns = round(NEXT * S_TO_NS / (frequency or self._fps))
@@ -175,7 +175,7 @@ class Observations:
             yield seen
 
     def _is_starting(self) -> bool:
-        """Return whether what is missing may still come."""
+        """Return whether missing topics may still arrive."""
         passed_ns = self._clock.now_ns() - self._began_ns
         return not self._is_complete and passed_ns < START_SEC * S_TO_NS
 
@@ -200,10 +200,10 @@ class Observations:
                 alarm.cancel()
 
     def newest(self) -> Seen:
-        """Return what the robot shows at the newest message of the reference topic.
+        """Return the observation at the newest message of the reference topic.
 
         Raises:
-            StaleError: something is older than its `max_age`, or was never heard (a TimeoutError).
+            StaleError: a topic is older than its `max_age`, or was never heard (a TimeoutError).
             MessageError: a message does not fit the contract (a ValueError).
         """
         at_ns = self._reference.times[-1] if self._reference.times else self._clock.now_ns()
@@ -230,11 +230,11 @@ class Observations:
         )
 
     def _age_ns(self) -> int:
-        """Return how old the newest message of the reference is."""
+        """Return the age of the newest message of the reference."""
         return self._clock.now_ns() - self._reference.times[-1]
 
     def _limit_ns(self) -> int:
-        """Return how old it may become until the next one comes."""
+        """Return the age that it may reach before the next one arrives."""
         return round((self._limits[self._topic] + 1 / self._fps) * S_TO_NS)
 
     def _stale(self, ages_ns: dict[str, int | None]) -> StaleError:

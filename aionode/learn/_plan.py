@@ -1,6 +1,6 @@
-"""Actions with times: what a policy's chunks leave to be sent, and when.
+"""Actions with times: which actions of a policy's chunks are to be sent, and when.
 
-No input or output, and no clock: times are nanoseconds of whichever clock the caller reads.
+This module does no I/O and reads no clock: times are nanoseconds by the caller's clock.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class ActionPlan:
 
     Args:
         period_ns: The time between two actions of a chunk.
-        lower: The least value of each number of an action.
-        upper: The greatest one.
-        blend_ns: For how long a new chunk is mixed with the rest of the last one.
+        lower: The lower limit of each number of an action.
+        upper: The upper limits.
+        blend_ns: For how long a new chunk is blended with the rest of the last one.
 
     Attributes:
         sent: Actions taken, in time.
-        late: Actions whose time was over before they could be sent.
+        late: Actions whose time had passed before they could be sent.
         clamped: Actions sent that a limit has changed.
         underruns: Periods for which there was no action, from the first action on.
     """
@@ -53,9 +53,9 @@ class ActionPlan:
         self._lower, self._upper = lower, upper
         self._blend_ns = blend_ns
         self._planned: list[Planned] = []
-        self._done: list[Planned] = []  # those of about one chunk, for `left_over`
-        self._last_ns: int | None = None  # the time of the action sent last
-        self._missed = 0  # periods since then that had no action
+        self._done: list[Planned] = []  # about one chunk of them, for `left_over`
+        self._last_ns: int | None = None  # the time of the last action sent
+        self._missed = 0  # periods without an action since then
         self._underruns = 0
         self.sent = self.late = self.clamped = 0
 
@@ -77,12 +77,12 @@ class ActionPlan:
         return None if self._last_ns is None else self._last_ns + self._period_ns
 
     def put(self, chunk: Numbers, first_ns: int, now_ns: int) -> int:
-        """Plan a chunk, in place of what was planned for the same time and later.
+        """Plan a chunk, replacing what was planned for the same time and later.
 
         Args:
             chunk: A row of finite numbers for each action.
             first_ns: The time of its first action.
-            now_ns: The time now: actions that are over are dropped.
+            now_ns: The current time: actions whose time has passed are dropped.
 
         Returns:
             The number of its actions that are planned.
@@ -90,10 +90,11 @@ class ActionPlan:
         period_ns = self._period_ns
         times = [first_ns + index * period_ns for index in range(len(chunk))]
         first = bisect_right(times, now_ns - period_ns)
-        if self._last_ns is not None:  # for these times the last chunk has sent something
+        if self._last_ns is not None:  # actions of the last chunk were sent for these times
             first = max(first, bisect_left(times, self._last_ns + period_ns // 2))
         self.late += first
-        del self._done[: bisect_left(self._done, first_ns, key=_time)]  # before any `left_over`
+        # `left_over` needs no earlier ones.
+        del self._done[: bisect_left(self._done, first_ns, key=_time)]
         if first == len(times):
             return 0
         values = np.clip(chunk, self._lower, self._upper)
@@ -107,7 +108,7 @@ class ActionPlan:
         return len(fresh)
 
     def _blended(self, values: Numbers, times: list[int], index: int, first: int) -> Numbers:
-        """Mix an action with what was planned for its time, less and less from the first one on."""
+        """Blend an action with what was planned for its time, less and less along the chunk."""
         since_ns = times[index] - times[first] + self._period_ns
         if since_ns >= self._blend_ns or not self._planned:
             return values
@@ -118,7 +119,7 @@ class ActionPlan:
         return share * values + (1 - share) * before
 
     def _planned_at(self, time_ns: int) -> Numbers | None:
-        """Return what is planned for a time, between two actions in proportion; None if nothing."""
+        """Return what is planned for a time, interpolated between actions; None if nothing is."""
         planned = [*self._done[-1:], *self._planned]
         after = bisect_left(planned, time_ns, key=_time)
         if after == len(planned):
@@ -131,7 +132,7 @@ class ActionPlan:
         return (1 - share) * before + share * values
 
     def put_now(self, values: Numbers, now_ns: int) -> None:
-        """Plan one action for now, in place of everything that was planned."""
+        """Plan one action for now, replacing everything that was planned."""
         inside = np.clip(values, self._lower, self._upper)
         self._planned = [Planned(now_ns, inside, bool((inside != values).any()))]
         self._done.clear()
@@ -139,7 +140,7 @@ class ActionPlan:
     def take(self, now_ns: int) -> Planned | None:
         """Remove and return the action to be sent now; None if there is none.
 
-        Of several whose time has come, as after the loop was blocked, it is the last one.
+        If several are due, as after the loop was blocked, it is the last one.
         """
         due = bisect_right(self._planned, now_ns, key=_time)
         if due == 0:
@@ -160,16 +161,15 @@ class ActionPlan:
         return action
 
     def note_time(self, now_ns: int) -> None:
-        """Count the periods that had no action until now."""
+        """Count the periods without an action until now."""
         if self._last_ns is not None:
             periods = (now_ns - self._last_ns + self._period_ns // 2) // self._period_ns
             self._missed = max(self._missed, periods - 1)
 
     def left_over(self, first_ns: int) -> Numbers:
-        """Return the actions planned for a time and each period after it, sent or not.
+        """Return the actions planned for a time and for each period after it, sent or not.
 
-        Each row is the action planned next to its time, as a chunk with that first time would have
-        it.
+        Each row is the action planned closest to its time, as in a chunk with that first time.
         """
         known = [*self._done, *self._planned]
         if not known:

@@ -1,4 +1,4 @@
-"""Records demonstrations: each episode is a bag of its own, begun and ended by whoever may."""
+"""Records demonstrations: each episode is a bag of its own, begun and ended over the network."""
 
 from __future__ import annotations
 
@@ -37,27 +37,27 @@ __all__ = ["Episode", "Episodes", "RecordEpisode"]
 NAME: Final = re.compile(r"episode_(\d{4,9})")
 
 FEEDBACK_SEC: Final = 0.5
-"""How often the goal of an episode is told how far it is."""
+"""The interval of feedback to the goal of an episode."""
 
 
 class RecordEpisode(ActionType, typename="aionode_learn/action/RecordEpisode"):
     """Record an episode until it is ended, its time is over, or the goal is canceled."""
 
     class Goal(Message):
-        """The task, empty for that of the recorder; the longest time in seconds, 0 for no limit."""
+        """The task, empty for the recorder's; the maximum duration in seconds, 0 for no limit."""
 
         task: str = ""
         max_sec: float64 = 0.0
 
     class Result(Message):
-        """The folder of the episode, its outcome, and its messages."""
+        """The folder of the episode, its outcome, and its number of messages."""
 
         path: str = ""
         outcome: str = ""
         messages: uint64 = 0
 
     class Feedback(Message):
-        """The messages so far, and those that were lost."""
+        """The number of messages so far, and of those lost."""
 
         messages: uint64 = 0
         lost: uint64 = 0
@@ -69,9 +69,9 @@ class Episode:
 
     Attributes:
         path: The folder of its bag.
-        task: What is shown, in words.
-        outcome: How it ended: ``success``, ``failure``, ``discarded``; empty if it has not.
-        stats: The messages recorded and lost, by topic.
+        task: What is demonstrated, in words.
+        outcome: How it ended: ``success``, ``failure`` or ``discarded``; empty if it has not.
+        stats: The numbers of messages recorded and lost, by topic.
     """
 
     path: Path
@@ -81,7 +81,7 @@ class Episode:
     _ended: asyncio.Event = field(default_factory=asyncio.Event)
 
     def discard(self) -> None:
-        """Have its bag removed at its end."""
+        """Remove its bag when it ends."""
         self.outcome = "discarded"
 
     @property
@@ -98,7 +98,7 @@ class Episode:
 class Episodes:
     """Records episodes into a folder: ``async with Episodes("runs", contract) as episodes:``.
 
-    Each is a closed bag with its task, contract and outcome in its metadata, so that a copy of it
+    Each is a closed bag with its task, contract and outcome in the metadata, so that a copy of it
     is complete. A recorder that is killed loses at most the last second.
 
     ::
@@ -109,20 +109,20 @@ class Episodes:
                 if not robot.holds_cube:
                     episode.discard()
 
-    Its node has the services ``~/start``, ``~/end``, ``~/fail``, ``~/discard`` and ``~/again``
-    (`std_srvs/srv/Trigger`), for pedals, buttons and the page of the gateway, and the action
-    ``~/record``, whose goal has the task.
+    Its node offers the services ``~/start``, ``~/end``, ``~/fail``, ``~/discard`` and ``~/again``
+    (`std_srvs/srv/Trigger`) for pedals, buttons and the page of the gateway, and the action
+    ``~/record``, whose goal contains the task.
 
     Args:
         folder: The folder of the episodes, which are numbered.
         contract: The contract, whose topics are recorded.
-        task: The task of the episodes that are given none; by default, that of the contract.
+        task: The task of episodes that are given none; by default, that of the contract.
         topics: Further topics to record.
         context: The context of its nodes; defaults to `Context.default()`.
         node_name: The name of its node.
 
     Attributes:
-        current: The episode that is being recorded; None in between.
+        current: The episode being recorded; None in between.
         node: Its node.
     """
 
@@ -165,10 +165,10 @@ class Episodes:
         )
 
     async def __aenter__(self) -> Self:
-        """Create the folder, and be ready to record.
+        """Create the folder, and get ready to record.
 
         Raises:
-            EpisodeError: there can be no episodes in the folder (a RuntimeError).
+            EpisodeError: the folder cannot be used for episodes (a RuntimeError).
         """
         self._check_folder()
         async with AsyncExitStack() as stack:
@@ -193,7 +193,7 @@ class Episodes:
 
     @asynccontextmanager
     async def record(self, task: str = "") -> AsyncIterator[Episode]:
-        """Record an episode inside the block; it failed if the block raises an error.
+        """Record an episode during the block; it counts as a failure if the block raises an error.
 
         Args:
             task: What is shown, in words; by default, the task of the recorder.
@@ -246,7 +246,7 @@ class Episodes:
             return self.current
 
     async def end(self) -> Episode:
-        """End the episode; what was shown is a success.
+        """End the episode as a success.
 
         Raises:
             EpisodeError: none is being recorded (a RuntimeError).
@@ -255,7 +255,7 @@ class Episodes:
         return await self._finish("success")
 
     async def fail(self) -> Episode:
-        """End the episode; what was shown is a failure, which an export leaves out."""
+        """End the episode as a failure, which an export leaves out."""
         return await self._finish("failure")
 
     async def discard(self) -> Episode:
@@ -263,13 +263,13 @@ class Episodes:
         return await self._finish("discarded")
 
     async def again(self) -> Episode:
-        """Discard the episode, and begin another one of the same task."""
+        """Discard the episode, and begin another one with the same task."""
         return await self.start((await self.discard()).task)
 
     async def failed(self) -> None:
-        """Wait until an episode cannot be written any more because the disk is full or fails.
+        """Wait until an episode can no longer be written because the disk is full or fails.
 
-        The episode goes on, without what is sent from then on, until it is ended, as a failure, or
+        The episode continues without what is sent from then on, until it is ended, as a failure, or
         discarded.
 
         Raises:
@@ -292,7 +292,7 @@ class Episodes:
         """Create the folder.
 
         Raises:
-            EpisodeError: it cannot be created, or written (a RuntimeError).
+            EpisodeError: it cannot be created or written to (a RuntimeError).
         """
         problem = "a file has this name" if self.folder.is_file() else ""
         try:
@@ -311,7 +311,7 @@ class Episodes:
         return self.folder / f"episode_{max(numbers, default=-1) + 1:04d}"
 
     async def _finish(self, outcome: str) -> Episode:
-        """End the episode with an outcome; empty if nobody said how it ended."""
+        """End the episode with an outcome, which is empty if nobody said how it ended."""
         async with self._turn:
             episode, recorder = self.current, self._recorder
             if episode is None or recorder is None:
@@ -370,7 +370,7 @@ class Episodes:
         )
 
     def _feedback(self) -> RecordEpisode.Feedback:
-        """Return how far the episode is."""
+        """Return the progress of the episode."""
         stats = {} if self._recorder is None else self._recorder.stats
         return RecordEpisode.Feedback(
             messages=sum(each.recorded for each in stats.values()),
@@ -379,7 +379,7 @@ class Episodes:
 
     @property
     def text(self) -> str:
-        """What is going on, in one line."""
+        """The current state in one line."""
         if self.current is None:
             return "Not recording"
         told = self._feedback()
@@ -393,7 +393,7 @@ class Episodes:
 def answering(
     act: Callable[[], Coroutine[Any, Any, Episode]],
 ) -> Callable[[Any, Any], Coroutine[Any, Any, Any]]:
-    """Return the callback of a service that does something with an episode."""
+    """Return the callback of a service that acts on an episode."""
 
     async def answer(_: Any, response: Any) -> Any:
         try:

@@ -1,4 +1,4 @@
-"""What became of the messages of an episode, as numbers and in plain words."""
+"""The report of an episode: how its messages were used, as numbers and as text."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ __all__ = [
 ]
 
 CLEAR: Final = 0.8
-"""The correlation from which a lag is certain enough to be told."""
+"""The correlation from which a lag is certain enough to be reported."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an export may have at most before it counts as bad.
+    """The limits beyond which an export counts as bad.
 
     Attributes:
-        dropped: The share of rows that are missing between the first and the last one, because
-            something was too old or a picture was lost.
-        repeated: The share of rows that show a picture again, for each camera.
-        rate: How far the rate of the rows may be from the contract's, as a share.
+        dropped: Maximum share of rows missing between the first and the last one because
+            something was too old or an image was lost.
+        repeated: Maximum share of rows that repeat an image, for each camera.
+        rate: Maximum deviation of the rate of the rows from the contract's, as a share.
     """
 
     dropped: float = 0.05
@@ -125,7 +125,7 @@ def topic_of(
 
 
 def spread(values: Array) -> dict[str, float] | None:
-    """Return the median, the 95th percentile and the maximum; None of nothing."""
+    """Return the median, the 95th percentile and the maximum; None if there are no values."""
     if not len(values):
         return None
     p50, p95 = np.percentile(values, (50, 95))
@@ -133,7 +133,7 @@ def spread(values: Array) -> dict[str, float] | None:
 
 
 def lags(contract: Contract, rows: Aligned) -> dict[str, float]:
-    """Return by name how long after an action its observation follows, where that is clear."""
+    """Return by name how long an observation takes to follow its action, where that is clear."""
     numbers = [each for each in contract.features.values() if each.kind == "numbers"]
     entries = contract.entries
     columns: tuple[dict[str, Array], dict[str, Array]] = ({}, {})
@@ -154,14 +154,14 @@ def lags(contract: Contract, rows: Aligned) -> dict[str, float]:
 
 
 def longest_of(rows: Aligned) -> tuple[int, int]:
-    """Return the first row of the longest episode, and the one after its last."""
+    """Return the first row of the longest episode, and the row after its last one."""
     return max(zip(rows.starts, rows.ends, strict=True), key=lambda each: each[1] - each[0])
 
 
 def lag_of(commanded: Array, observed: Array, fps: int) -> float | None:
-    """Return the seconds by which an observation follows its command; None if that is not clear.
+    """Return the seconds by which an observation follows its command; None if unclear.
 
-    The observation may be what is commanded, or its derivative is: a position for a speed.
+    Either the observation or its derivative may be what is commanded: a position for a speed.
     """
     best: tuple[float, float | None] = (CLEAR, None)
     for followed in (observed[:-1], np.diff(observed)):
@@ -173,11 +173,11 @@ def lag_of(commanded: Array, observed: Array, fps: int) -> float | None:
     return best[1]
 
 
-# In plain words
+# As text
 
 
 def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
-    """Return what is over the limits."""
+    """Return what exceeds the limits."""
     found = [*report["problems"]]
     dropped = share(report["missing"], report["missing"] + report["rows"])
     is_short = not report["rows"] or dropped > limits.dropped
@@ -214,7 +214,7 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
 
 
 def stamp_problems(topic: dict[str, Any]) -> list[str]:
-    """Return what is wrong with the times in the headers of a topic, with what to do."""
+    """Return what is wrong with the header times of a topic, with what to do."""
     name, found = topic["topic"], []
     offset = topic["offset_sec"]
     if topic["unstamped"]:
@@ -240,7 +240,7 @@ def stamp_problems(topic: dict[str, Any]) -> list[str]:
 
 
 def shifted(sec: float) -> str:
-    """Return how long before its arrival a message was stamped, or after it."""
+    """Return how long before or after its arrival a message was stamped, as text."""
     amount = f"{abs(sec):.1f} s" if abs(sec) > OTHER_CLOCK else f"{abs(sec) * 1e3:.1f} ms"
     return f"{amount} {'before' if sec >= 0 else 'after'} arrival"
 
@@ -281,7 +281,7 @@ def trouble_of(
 
 
 def stale_text(topic: dict[str, Any]) -> str:
-    """Return that a topic is too old for rows, with what to do."""
+    """Return the text for a topic that is too old for rows, with what to do."""
     return (
         f"{topic['topic']}: too old for {counted(topic['stale'], 'row')}: max_age is "
         f"{topic['max_age_sec'] * 1e3:.0f} ms, and it has {topic['rate_hz']:.1f} Hz; raise its "
@@ -290,12 +290,12 @@ def stale_text(topic: dict[str, Any]) -> str:
 
 
 def share(part: float, whole: float) -> float:
-    """Return a part of a whole; 0 of nothing."""
+    """Return a part as a share of a whole; 0 if the whole is 0."""
     return part / whole if whole else 0.0
 
 
 def text_of(report: dict[str, Any], limits: Limits, fps: int) -> str:
-    """Return the report of one bag in plain words."""
+    """Return the report of one bag as text."""
     length = report["rows"] / fps
     outcome = f"; {report['outcome']}" if report["outcome"] else ""
     head = (

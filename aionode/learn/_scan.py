@@ -1,4 +1,4 @@
-"""Reads what a contract needs from a bag: all numbers, and of pictures their times."""
+"""Reads what a contract needs from a bag: all numbers, but of images only their times."""
 
 from __future__ import annotations
 
@@ -23,34 +23,34 @@ if TYPE_CHECKING:
 __all__ = ["UNREADABLE", "Collected", "full_name", "records_of", "scanned"]
 
 UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
-"""What a message that does not fit the contract raises."""
+"""What reading a message that does not fit the contract raises."""
 
 STAMPS: Final = (struct.Struct(">iI"), struct.Struct("<iI"))
-"""The time at the start of a message with a header, by the lowest bit of its second byte."""
+"""The format of the time at the start of a message, by the lowest bit of its second byte."""
 
 STAMP_PATHS: Final = ("header.stamp.sec", "header.stamp.nanosec")
-"""Where the numbers of a captured time are."""
+"""The paths of the numbers that make up the time in a header."""
 
 FIRST_FIELD: Final = 4
-"""Where the first field of a message begins, in its bytes."""
+"""The offset of the first field in the bytes of a message."""
 
 
 class Collected:
     """The messages of one entry, while they are read.
 
-    In arrays, which take a tenth of the memory of lists: a recording of an hour has a million.
+    They are kept in arrays, which take a tenth of the memory of lists: an hour has a million.
 
     Attributes:
         entry: The entry of the contract.
-        is_image: Whether its messages are pictures.
+        is_image: Whether its messages are images.
         is_captured: Whether their time is that in their header.
         info: The topic in the bag of the last message, which the entry can read.
         times: Their times in nanoseconds, by header or arrival.
         arrivals: When they arrived.
-        ordinals: Their places among all messages of their topic.
-        values: The numbers of one after the other; none of pictures.
+        ordinals: Their positions among all messages of their topic.
+        values: The numbers of one message after the other; empty for images.
         unstamped: Which of them have no time in their header.
-        count: How many messages there were, with those that were left out.
+        count: How many messages there were, including those that were left out.
         invalid: How many could not be read.
         problem: What was wrong with the first of these.
     """
@@ -80,7 +80,7 @@ class Collected:
             if not self.is_image:
                 self.values.frombytes(self.entry.value(record.message).tobytes())
             elif not self.times:
-                self.entry.value(record.message)  # is it such a picture at all?
+                self.entry.value(record.message)  # raises if it is not such an image
         except UNREADABLE as error:
             self.invalid += 1
             self.problem = self.problem or str(error)
@@ -93,7 +93,7 @@ class Collected:
         self.ordinals.append(ordinal)
 
     def stamp_of(self, record: Record) -> int:
-        """Return the time in a header, 0 without one; that of a picture without the picture."""
+        """Return the time in a header, or 0; for an image, without decoding the rest."""
         if not self.is_image:
             return self.entry.time_of(record.message, 0)
         if len(record.raw) < FIRST_FIELD + 8:
@@ -102,10 +102,10 @@ class Collected:
         return int(sec) * 1_000_000_000 + int(nanosec)
 
     def series(self) -> Series:
-        """Return what was taken, in the order of its times.
+        """Return the messages taken, in the order of their times.
 
         A message without a time in its header is left out, unless none of the topic has one: then
-        their arrivals are their times.
+        the times of arrival are used.
         """
         columns = 0 if self.is_image else self.entry.shape[0]
         found = Series(
@@ -126,7 +126,7 @@ class Collected:
 
 
 def check_type(info: TopicInfo, entry: Observation | Action) -> None:
-    """Raise the error for a topic, of which a bag may have several, that an entry cannot read.
+    """Raise an error if an entry cannot read a topic, of which a bag may have several.
 
     Raises:
         InterfaceNotFoundError: neither aionode nor the bag has a definition of its type.
@@ -152,12 +152,12 @@ def check_type(info: TopicInfo, entry: Observation | Action) -> None:
 def scanned(
     opened: Bag, contract: Contract, tell: Callable[[int], None]
 ) -> tuple[list[Series], list[str]]:
-    """Return the messages of each entry of a contract, and what could not be read of the bag.
+    """Return the messages of each entry of a contract, and which parts of the bag were unreadable.
 
     Args:
         opened: The bag.
         contract: The contract.
-        tell: Called with the number of messages that were read, to show progress.
+        tell: Called with the number of messages read so far, to show progress.
     """
     collected = [Collected(entry) for entry in contract.entries]
     by_topic: dict[str, list[Collected]] = {}
@@ -172,7 +172,7 @@ def scanned(
 
 
 def absence_of(opened: Bag, name: str) -> str:
-    """Return that a bag has no message of a topic, with a topic of a similar name if it has one."""
+    """Return the text for a topic missing from a bag, with a topic of a similar name if any."""
     there = sorted(each for each, count in opened.counts.items() if count)
     near = difflib.get_close_matches(name, there, 1)
     remedy = f"did you mean {near[0]}?" if near else "was its driver at work?"
@@ -180,12 +180,12 @@ def absence_of(opened: Bag, name: str) -> str:
 
 
 def full_name(topic: str) -> str:
-    """Return a topic of a contract as bags name it: those of a robot without a namespace."""
+    """Return the name of a contract's topic in bags, which are of robots without a namespace."""
     return f"/{topic.removeprefix('/')}"
 
 
 def records_of(opened: Bag, topics: set[str], problems: list[str]) -> Iterator[Record]:
-    """Yield the records of topics; what is damaged is left out, and noted."""
+    """Yield the records of topics; damaged parts are skipped and noted."""
     if not topics:
         return
     try:

@@ -1,4 +1,4 @@
-"""Videos of data sets: pictures at exactly equal steps, in files that any reader can seek in."""
+"""Videos of data sets: frames at exactly equal steps, in files in which any reader can seek."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ CODECS: Final[dict[str, tuple[str, str, dict[str, str]]]] = {
     "av1": ("libsvtav1", "yuv420p", {"crf": "30", "preset": "12"}),
     "depth": ("libx265", "gray12le", {"x265-params": "lossless=1:log-level=none:bframes=0"}),
 }
-"""The encoder, format of pixels and options of each codec."""
+"""The encoder, pixel format and options of each codec."""
 
 KEY_FRAMES: Final = 2
 """Every second frame can be decoded by itself: training reads frames in any order."""
@@ -50,7 +50,7 @@ def quantized(depths: Array) -> Array:
 
 
 def picture_of(pixels: Array) -> Any:
-    """Return the frame of a picture: of colours, greys, or depths in metres."""
+    """Return the video frame of an image: colours, greys, or depths in metres."""
     if pixels.dtype == np.float32:
         steps = quantized(pixels)
         frame = av.VideoFrame(steps.shape[1], steps.shape[0], "gray12le")
@@ -63,17 +63,17 @@ def picture_of(pixels: Array) -> Any:
 
 
 class VideoWriter:
-    """Writes pictures of one size to an MP4 file, with a constant frame rate.
+    """Writes images of one size to an MP4 file with a constant frame rate.
 
     Args:
         path: The file.
-        shape: Rows and columns of the pictures.
+        shape: Rows and columns of the images.
         fps: Frames per second.
         codec: ``h264``, ``av1`` or ``depth``.
-        threads: Threads of the encoder.
+        threads: Number of threads of the encoder.
 
     Attributes:
-        count: The frames so far.
+        count: Number of frames so far.
     """
 
     def __init__(
@@ -108,11 +108,11 @@ class VideoWriter:
             self._container.close()
 
     def converted(self, pixels: Array) -> Any:
-        """Return the frame of a picture in the format of the file."""
+        """Return the frame of an image in the format of the file."""
         return picture_of(pixels).reformat(format=self.pixels)
 
     def add(self, frame: Any) -> None:
-        """Add a frame of `converted`; the same one again repeats it."""
+        """Add a frame that `converted` returned; adding the same one again repeats it."""
         frame.pts, frame.time_base = self.count, self._base
         self._container.mux(self._stream.encode(frame))
         self.count += 1
@@ -129,7 +129,7 @@ def frame_times(path: Path) -> list[Fraction]:
 
 
 class PixelStats:
-    """Counts the pixels of pictures by channel and value, for exact statistics of a sample."""
+    """Counts the pixels of images by channel and value, for exact statistics of a sample."""
 
     def __init__(self, kind: str) -> None:
         self.is_depth = kind == "depth"
@@ -137,7 +137,7 @@ class PixelStats:
         self.pictures = 0
 
     def add(self, pixels: Array) -> None:
-        """Count a picture, if it is of the sample."""
+        """Count an image if it is in the sample."""
         self.pictures += 1
         if self.pictures % 5 != 1:
             return
@@ -167,7 +167,7 @@ class PixelStats:
 
 
 def of_histogram(scale: Array, counts: Array) -> dict[str, float]:
-    """Return the statistics of values that are there so many times."""
+    """Return the statistics of values from the number of times that each occurs."""
     total = max(int(counts.sum()), 1)
     there = np.flatnonzero(counts) if counts.any() else np.zeros(1, np.int64)
     mean = float((scale * counts).sum() / total)

@@ -31,9 +31,9 @@
         upper: [1.0, 1.0]
         stop: zero
 
-Observations of one feature are put one after the other, so that arm and gripper may have topics of
-their own; the same holds for actions. The picture of the reference makes a row: everything else is
-as of its time, and an action as of one period later, as it answers the picture.
+Observations of one feature are concatenated, so that arm and gripper may have topics of
+their own; the same holds for actions. Each image of the reference makes a row: everything else is
+as of its time, and an action as of one period later, as it answers the image.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ if TYPE_CHECKING:
 __all__ = ["Action", "Contract", "Feature", "Observation"]
 
 MOST_ENTRIES: Final = 100
-"""Maximum observations and maximum actions of a contract."""
+"""Maximum number of observations, and of actions, in a contract."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +79,8 @@ class Feature:
         name: Its name, such as ``observation.state``.
         kind: ``numbers``, ``color``, ``mono`` or ``depth``.
         shape: The shape of a value.
-        labels: The name of each number; empty for pictures.
-        entries: The observations or actions that it consists of, in order.
+        labels: The name of each number; empty for images.
+        entries: The observations or actions of which it consists, in order.
     """
 
     name: str
@@ -91,16 +91,16 @@ class Feature:
 
 
 class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
-    """What a policy observes and commands; one file records, converts and drives.
+    """What a policy observes and commands: one file for recording, converting and driving.
 
     Attributes:
         observations: What it observes.
         actions: What it commands.
-        fps: The frames of a second, as of the reference.
-        reference: The topic whose messages make the rows; without it, that of the first picture,
-            or of the first observation.
-        task: What the robot is to do, in words; may be empty, and be given to each recording.
-        robot: The type of the robot, such as ``so101``; for people.
+        fps: The frames per second of the reference.
+        reference: The topic whose messages make the rows; by default, that of the first image
+            observation, or else of the first observation.
+        task: What the robot is to do, in words; may be empty and be given for each recording.
+        robot: The type of the robot, such as ``so101``, for human readers.
         gap: What a gap of more than 1.5 periods between rows does: ``end`` ends the episode, and
             what follows is another one; ``refuse`` refuses the episode.
     """
@@ -114,7 +114,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     gap: Literal["end", "refuse"] = "end"
 
     def __post_init__(self) -> None:
-        """Check what the entries have in common."""
+        """Check rules that concern several entries."""
         if not 1 <= self.fps <= 1000:
             raise ValueError(f"fps: {self.fps}; 1 to 1000 fits")
         for name, given in (("observations", self.observations), ("actions", self.actions)):
@@ -131,7 +131,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             self.check_feature([each for each in self.entries if each.feature == name])
 
     def check_feature(self, entries: list[Observation | Action]) -> None:
-        """Raise ValueError if the entries of one feature cannot be put together."""
+        """Raise ValueError if the entries of one feature cannot be combined."""
         name = entries[0].feature
         if len({type(each) for each in entries}) > 1:
             raise ValueError(f"{name}: both an observation and an action; each needs its own name")
@@ -172,7 +172,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
         Args:
             given: The values.
-            path: What errors call it.
+            path: The name that errors use.
 
         Raises:
             ContractError: they are not a contract (a ValueError).
@@ -234,9 +234,9 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
                     print(seen.at, seen.values["observation.state"], seen.age)
 
         Args:
-            node: Whose subscriptions and whose clock it uses.
+            node: The node whose subscriptions and clock are used.
         """
-        from aionode.learn._observer import Observations  # for programs that drive, or watch
+        from aionode.learn._observer import Observations  # only for programs that drive or watch
 
         return Observations(node, self.observations, self.main, self.fps, self.max_age)
 
@@ -249,9 +249,9 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
                 await actor.run(policy)
 
         Args:
-            node: Whose publishers and whose clock it uses.
-            blend_sec: For how long a new chunk is mixed with the rest of the last one, from all of
-                the old to all of the new.
+            node: The node whose publishers and clock are used.
+            blend_sec: For how long a new chunk is blended with the rest of the last one, from
+                entirely the old to entirely the new.
 
         Raises:
             ContractError: a lease is shorter than the time between two actions (a ValueError).
@@ -261,7 +261,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         return Actor(node, self.actions, self.fps, lambda: self.observe(node), blend_sec)
 
     def split(self, feature: str, values: Array) -> list[tuple[Observation | Action, Array]]:
-        """Return the part of a feature's value that each of its entries has."""
+        """Return a feature's value, split into the parts of its entries."""
         entries = self.features[feature].entries
         if len(entries) == 1:
             return [(entries[0], values)]
@@ -270,14 +270,14 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 def listed(value: Any) -> Any:
-    """Return plain values with lists for tuples, as files have them."""
+    """Return plain values with lists instead of tuples, as in files."""
     if isinstance(value, dict):
         return {key: listed(each) for key, each in value.items()}
     return [listed(each) for each in value] if isinstance(value, list | tuple) else value
 
 
 def feature_of(entries: list[Observation | Action]) -> Feature:
-    """Return the feature of its entries."""
+    """Return the feature that entries form."""
     first = entries[0]
     if isinstance(first, Observation) and first.image:
         return Feature(first.feature, first.image, first.shape, (), (first,))
@@ -285,11 +285,11 @@ def feature_of(entries: list[Observation | Action]) -> Feature:
     return Feature(first.feature, "numbers", (len(labels),), labels, tuple(entries))
 
 
-# Errors with the line of what they are about
+# Errors that name the line
 
 
 def contract_from(given: object, path: str, node: Any) -> Contract:
-    """Return the contract of plain values; errors name the line in the node of the file."""
+    """Return the contract from plain values; errors name the line in the YAML node."""
     try:
         return msgspec.convert(given, Contract)
     except msgspec.ValidationError as error:
@@ -338,7 +338,7 @@ def line_of(node: Any, parts: list[str | int]) -> int:
 
 
 def nodes_along(node: Any, parts: list[str | int]) -> Iterator[Any]:
-    """Yield the nodes on the way to a place, as far as they are there."""
+    """Yield the nodes on the path to a place, as far as they exist."""
     if node is not None:
         yield node
     for part in parts:
@@ -358,7 +358,7 @@ def nodes_along(node: Any, parts: list[str | int]) -> Iterator[Any]:
 
 
 def check_keys(path: str, node: Any) -> None:
-    """Raise the error for a key that a mapping has twice, of which YAML takes the last."""
+    """Raise an error for a key that a mapping has twice, of which YAML would take the last."""
     if isinstance(node, yaml.MappingNode):
         seen: set[str] = set()
         for key, value in node.value:
