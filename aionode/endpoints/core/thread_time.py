@@ -19,7 +19,8 @@ class ThreadTime:
     """Measures how long the thread of an event loop ran since shortly before a callback.
 
     The time is read after a callback, never before it, so that no message waits for the reading.
-    Between the reading and the next callback the loop sleeps, which takes no thread time.
+    Between the reading and the next callback the loop mostly sleeps, which takes no thread time;
+    what else it runs counts as well, so that a wait in a callback right after may not be told.
 
     Attributes:
         due_ns: The `perf_ns` time from which the next reading is due; checked by the callers, since
