@@ -218,24 +218,28 @@ async def test_commands_that_stop_coming_are_followed_by_the_stop(aionode_contex
     """A script that is killed, or a cable that is cut: nobody has to report it."""
     async with robot_and_client(aionode_context, COMMANDS) as (robot, client):
         for _ in range(2):  # each request is a session of its own, but there is one holder
-            while is_too_old(answer := await client.post("/topics/cmd_vel", json=TWIST)):
-                pass  # this computer was too busy, and the answer says to send it again
-            assert answer.status_code == 204
+            assert (await command(client)).status_code == 204
         while (await anext(robot.commands)).linear.x:
             pass
 
 
-def is_too_old(answer: httpx.Response) -> bool:
-    """Return whether a command was refused because it may have waited in a stalled gateway."""
-    return answer.status_code == 409 and answer.json()["code"] == "too_old"
+async def command(client: httpx.AsyncClient, **options: Any) -> httpx.Response:
+    """Return the answer to a command.
+
+    On a busy computer a command may have waited in a stalled gateway: that answer says to send it
+    again.
+    """
+    while True:
+        answer = await client.post("/topics/cmd_vel", json=TWIST, **options)
+        if answer.status_code != 409 or answer.json()["code"] != "too_old":
+            return answer
 
 
 async def test_a_topic_that_another_client_commands_is_held(aionode_context: Context) -> None:
     """The other one learns who holds it."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
-        await client.post("/topics/cmd_vel", json=TWIST)
-        pilot = {"Authorization": "Bearer secret"}
-        answer = await client.post("/topics/cmd_vel", json=TWIST, headers=pilot)
+        await command(client)
+        answer = await command(client, headers={"Authorization": "Bearer secret"})
 
     assert (answer.status_code, answer.json()["code"]) == (409, "held")
     assert "local" in answer.json()["error"]
@@ -245,7 +249,7 @@ async def post(url: Any, client: str = "", **headers: str) -> httpx.Response:
     """Return the answer to a command over its own connection."""
     async with http_client(url.port) as other:
         query = {"client": client} if client else {}
-        return await other.post("/topics/cmd_vel", json=TWIST, params=query, headers=headers)
+        return await command(other, params=query, headers=headers)
 
 
 async def test_two_programs_with_one_identity_do_not_drive_at_once(
@@ -254,7 +258,7 @@ async def test_two_programs_with_one_identity_do_not_drive_at_once(
     """The second learns who holds the topic, and how to use several connections as one client."""
     async with robot_and_client(aionode_context, SLOWLY) as (robot, client):
         for _ in range(2):
-            assert (await client.post("/topics/cmd_vel", json=TWIST)).status_code == 204
+            assert (await command(client)).status_code == 204
         answer = await post(client.base_url)
         got = [(await anext(robot.commands)).linear.x for _ in range(2)]
 
@@ -281,11 +285,7 @@ async def test_behind_a_proxy_a_connection_is_no_holder(aionode_context: Context
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         forwarded = {"X-Forwarded-For": "10.0.0.7", "Authorization": "Bearer secret"}
         codes = [
-            (
-                await client.post(
-                    "/topics/cmd_vel", json=TWIST, headers=forwarded, params={"client": name}
-                )
-            ).status_code
+            (await command(client, headers=forwarded, params={"client": name})).status_code
             for name in ("", "", "pad")
         ]
 
@@ -306,7 +306,7 @@ async def test_the_name_of_a_client_is_short_and_shown_escaped(aionode_context: 
 async def test_a_websocket_and_a_request_of_one_identity_are_two(aionode_context: Context) -> None:
     """Each protocol has its own holders, whoever the client is."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
-        await client.post("/topics/cmd_vel", json=TWIST)
+        await command(client)
         async with connect(f"ws://127.0.0.1:{client.base_url.port}", proxy=None) as page:
             await page.send('{"op": "set_level", "level": "error"}')
             await page.send(
