@@ -109,6 +109,20 @@ class EndHandler:
         self._unread.stop()
         for number in self._before:
             self._restore(number)
+        if self._first is not None:
+            # `atexit` calls its functions too late: Python joins threads and process pools before.
+            with contextlib.suppress(AttributeError, RuntimeError):  # private; at the end already
+                threading._register_atexit(self._handle_at_exit)  # type: ignore[attr-defined]
+
+    def _handle_at_exit(self) -> None:
+        """Handle a second signal also while the interpreter exits after a first one.
+
+        It waits without a limit for threads and for the workers of process pools, and a worker that
+        is stopped (SIGSTOP) does not end. Python's own handler ends just one of these waits. Other
+        signals end the process by themselves, and a handler of the program is left alone.
+        """
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self)
 
 
 class SuddenEnd:

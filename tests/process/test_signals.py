@@ -297,6 +297,39 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
     assert err == "aionode: ended at once by a second signal (SIGINT)\n"
 
 
+POOL_THAT_IS_STOPPED = """
+import multiprocessing, os, signal
+from concurrent.futures import ProcessPoolExecutor
+
+pool = ProcessPoolExecutor(1, multiprocessing.get_context("fork"))
+
+async def main():
+    worker = await asyncio.get_running_loop().run_in_executor(pool, os.getpid)
+    os.kill(worker, signal.SIGSTOP)
+    print("ready", worker, flush=True)
+    await asyncio.Event().wait()
+
+aionode.run(main, args=[])
+print("after run", flush=True)
+"""
+
+
+def test_a_second_ctrl_c_ends_a_program_whose_process_pool_is_stopped() -> None:
+    """After `run`, Python waits for the pool's worker without a limit, and a debugger holds it."""
+    with Program(SOON, POOL_THAT_IS_STOPPED, fresh=True) as program:
+        assert program.process.stdout is not None
+        worker = int(program.process.stdout.readline().removeprefix("ready "))
+        try:
+            program.send(SIGINT)
+            assert program.process.stdout.readline() == "after run\n"
+            while program.process.poll() is None:  # the first ones may come before Python waits
+                program.send(SIGINT)
+                threading.Event().wait(0.1)
+            assert program.process.returncode == 130
+        finally:
+            os.kill(worker, signal.SIGKILL)
+
+
 def test_a_program_that_ignores_sighup_goes_on_ignoring_it() -> None:
     """Under nohup it does, since it is meant to outlive the terminal."""
     with Program(WAITS_FOR_EVER, before=("nohup",)) as program:
