@@ -22,6 +22,7 @@ from hypothesis.internal.conjecture import providers
 from aionode import rclpy
 from aionode.node import Node
 from tests.bytecode import share_bytecode
+from tests.support.checking_loop import CheckingLoop
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Generator, Iterator
@@ -53,14 +54,6 @@ if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 share_bytecode()
-
-
-def debugging_loop() -> asyncio.AbstractEventLoop:
-    """Return asyncio's own loop, which reports forgotten coroutines and foreign threads."""
-    loop = asyncio.new_event_loop()
-    loop.set_debug(True)
-    loop.slow_callback_duration = 60.0  # measuring is the business of benchmarks
-    return loop
 
 
 PROCESSES = (
@@ -217,7 +210,7 @@ def pytest_asyncio_loop_factories(
     With "not first_loop" among the selected marks, what does not depend on the loop runs on uvloop.
     """
     factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {
-        "asyncio": debugging_loop,
+        "asyncio": CheckingLoop,
         "uvloop": uvloop.new_event_loop,
     }
     expression = config.option.markexpr
