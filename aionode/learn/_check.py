@@ -18,7 +18,7 @@ from aionode.node import direct_subscription
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
-    from aionode.learn._alignment import Series
+    from aionode.learn._series import Series
     from aionode.learn.contract import Action, Contract, Observation
     from aionode.node import Node
 

@@ -17,10 +17,11 @@ import pyarrow.parquet as pq
 
 from aionode import bag
 from aionode.errors import DatasetError
-from aionode.learn._alignment import Aligned, Series, aligned
+from aionode.learn._alignment import Aligned, aligned
 from aionode.learn._metadata import CONTRACT_KEY, TASK_KEY
 from aionode.learn._report import counted, report_of
 from aionode.learn._scan import UNREADABLE, full_name, records_of, scanned
+from aionode.learn._series import Series
 from aionode.learn._video import PixelStats, VideoWriter
 from aionode.learn.contract import Contract, Observation
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from aionode.clock import S_TO_NS, Time
 from aionode.errors import StaleError
+from aionode.learn._series import Series, in_order
 from aionode.qos import qos_profile_sensor_data
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ START_SEC: Final = 5.0
 """How long each topic may take until its first message."""
 
 KEPT_NS: Final = 1_000_000_000
-"""How far the stamps of a topic may run ahead of those of the reference."""
+"""How much earlier than the reference the messages of its time may arrive."""
 
 KEPT: Final = 2_000
 """Maximum messages kept of a topic."""
@@ -37,20 +38,37 @@ NEXT: Final = 0.75
 
 
 class History:
-    """The newest messages of one topic, in the order of their times."""
+    """The newest messages of one topic, in the order of their times and arrivals.
+
+    Times that contradict others are left out as by an export, so a policy sees what it was trained
+    on: a time in the future is there until the next message shows that it is false.
+    """
 
     def __init__(self) -> None:
         self.times: list[int] = []
+        self.arrivals: list[int] = []
         self.messages: list[Any] = []
 
-    def add(self, time_ns: int, message: Any) -> None:
-        """Keep a message, and forget those that no reference will need."""
-        index = bisect_right(self.times, time_ns)
-        self.times.insert(index, time_ns)
-        self.messages.insert(index, message)
-        too_old = bisect_right(self.times, self.times[-1] - KEPT_NS) - 1
+    def add(self, time_ns: int, arrival_ns: int, message: Any) -> None:
+        """Keep a message, and forget those that no reference will ask for."""
+        if self.arrivals and arrival_ns < self.arrivals[-1]:  # a simulation that begins again
+            self._keep([])
+        self.times.append(time_ns)
+        self.arrivals.append(arrival_ns)
+        self.messages.append(message)
+        count = len(self.times)
+        if count > 1 and time_ns <= self.times[-2]:
+            times, arrivals = np.array(self.times, np.int64), np.array(self.arrivals, np.int64)
+            series = Series(times, arrivals, np.empty((count, 0)), np.arange(count))
+            self._keep(in_order(series).ordinals.tolist())
+        # By their arrivals: a time in the future does not make the others old.
+        too_old = bisect_right(self.arrivals, arrival_ns - KEPT_NS) - 1
         forgotten = max(too_old, len(self.times) - KEPT, 0)
-        del self.times[:forgotten], self.messages[:forgotten]
+        del self.times[:forgotten], self.arrivals[:forgotten], self.messages[:forgotten]
+
+    def _keep(self, places: list[int]) -> None:
+        for each in (self.times, self.arrivals, self.messages):
+            each[:] = [each[place] for place in places]
 
     def age_ns(self, time_ns: int) -> int | None:
         """Return how old the newest message was at a time; None if there was none."""
@@ -143,7 +161,8 @@ class Observations:
             subscription.destroy()
 
     def _take(self, entry: Observation, message: Any) -> None:
-        self._histories[entry.topic].add(entry.time_of(message, self._clock.now_ns()), message)
+        now_ns = self._clock.now_ns()
+        self._histories[entry.topic].add(entry.time_of(message, now_ns), now_ns, message)
         if entry.topic == self._topic:
             self._arrived.set()
 
@@ -185,12 +204,15 @@ class Observations:
         Raises:
             StaleError: it is silent for too long.
         """
-        times = self._reference.times
-        while not times or (self._last_ns is not None and times[-1] < self._last_ns + apart_ns):
+        times, arrivals = self._reference.times, self._reference.arrivals
+        # A last reference after the newest one had a time in the future, and is gone.
+        while not times or (
+            self._last_ns is not None and self._last_ns <= times[-1] < self._last_ns + apart_ns
+        ):
             self._arrived.clear()
             over_ns = self._began_ns + round(START_SEC * S_TO_NS)
             if times and not self._is_starting():
-                over_ns = times[-1] + self._limit_ns()
+                over_ns = min(times[-1], arrivals[-1]) + self._limit_ns()
             if over_ns <= self._clock.now_ns():
                 raise self._stale({self._topic: self._age_ns() if times else None})
             alarm = self._clock.call_at(over_ns, self._arrived.set)

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from aionode.errors import escaped
-from aionode.learn._alignment import OTHER_CLOCK, pictures_per_row
+from aionode.learn._alignment import pictures_per_row
 from aionode.learn._metadata import OUTCOME_KEY
 from aionode.learn._scan import full_name
+from aionode.learn._series import OTHER_CLOCK
 
 if TYPE_CHECKING:
     from aionode.bag import Bag
-    from aionode.learn._alignment import Aligned, Series
+    from aionode.learn._alignment import Aligned
     from aionode.learn._entries import Array
+    from aionode.learn._series import Series
     from aionode.learn.contract import Action, Contract, Observation
 
 __all__ = [

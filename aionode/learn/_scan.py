@@ -11,8 +11,8 @@ import numpy as np
 
 from aionode.bag.files.record import MOST_NS
 from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, MessageError
-from aionode.learn._alignment import Series, in_order
 from aionode.learn._field_paths import check_path
+from aionode.learn._series import Series, in_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -17,8 +17,9 @@ from aionode.errors import DatasetError
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Contract, export
-from aionode.learn._alignment import Series, aligned, in_order
+from aionode.learn._alignment import aligned
 from aionode.learn._report import lag_of, topic_of
+from aionode.learn._series import Series, in_order
 from tests.support.demonstrations import (
     HEIGHT,
     SPEED,

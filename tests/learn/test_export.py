@@ -23,8 +23,9 @@ from aionode.engine.wire import cdr
 from aionode.errors import BagError, DatasetError
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.learn import Limits, check_dataset, export
-from aionode.learn._alignment import Series, aligned
+from aionode.learn._alignment import aligned
 from aionode.learn._scan import Collected
+from aionode.learn._series import Series
 from tests.support.demonstrations import (
     HEIGHT,
     START_NS,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections.abc import AsyncIterator, Coroutine
 from typing import Any
 
@@ -19,6 +20,7 @@ from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.learn import Contract
 from aionode.learn._observer import History, Seen
+from aionode.learn._series import Series, in_order
 from aionode.testing import ManualClock, local_context, settle
 
 MS = 1_000_000
@@ -241,26 +243,92 @@ async def test_a_picture_of_another_size_is_an_error(robot: Robot) -> None:
             observations.newest()
 
 
-@given(
-    times=st.lists(st.integers(min_value=0, max_value=3_000), min_size=1, max_size=60),
-    asked=st.integers(min_value=0, max_value=3_000),
-)
-def test_a_history_knows_what_was_newest(times: list[int], asked: int) -> None:
-    """In whatever order messages arrive, for a second back from the newest one."""
-    history = History()
-    for time_ms in times:
-        history.add(time_ms * MS, time_ms)
+async def test_one_reference_of_the_future_does_not_shut_out_the_next(robot: Robot) -> None:
+    """It is named once; an export leaves it out, too."""
+    async with CONTRACT.observe(robot.node) as observations:
+        for time_ms in range(1000, 1400, 100):
+            await robot.move("arm", time_ms, 1.0)
+            await robot.move("gripper", time_ms, 1.0)
+            await robot.show(time_ms + (100_000 if time_ms == 1200 else 0))
+            if time_ms == 1200:
+                with pytest.raises(StaleError, match=r"/camera is -100\.000 s old"):
+                    await next_of(observations.at())
+            else:
+                assert (await next_of(observations.at())).at.nanoseconds == time_ms * MS
+            await robot.clock.advance(0.1)
 
-    newest = max((each for each in times if each <= asked), default=None)
-    assert history.times == sorted(history.times)
-    if asked >= max(times) - 1000:
-        age_ns = history.age_ns(asked * MS)
-        assert age_ns == (None if newest is None else (asked - newest) * MS)
+
+async def test_a_reference_that_falls_silent_after_a_false_time_is_named(robot: Robot) -> None:
+    """As soon as without it, as its arrival counts."""
+    async with CONTRACT.observe(robot.node) as observations:
+        for time_ms in (1000, 100_000):
+            await robot.move("arm", 1000, 1.0)
+            await robot.move("gripper", 1000, 1.0)
+            await robot.show(time_ms)
+            with contextlib.suppress(StaleError):
+                await next_of(observations.at())
+        waiting = begin(next_of(observations.at()))
+        await robot.clock.advance(0.251)
+        assert waiting.done()
+        with pytest.raises(StaleError):
+            await waiting
+
+
+async def test_one_joint_of_the_future_does_not_shut_out_the_next(robot: Robot) -> None:
+    """Nor does it make the messages before it disappear."""
+    async with CONTRACT.observe(robot.node) as observations:
+        for time_ms in (930, 950, 100_000, 970):
+            await robot.move("arm", time_ms, time_ms / 1000)
+            await robot.move("gripper", 900, 5.0)
+        for time_ms in (940, 970):
+            await robot.show(time_ms)
+            seen = await next_of(observations.at(100))
+            assert seen.values["observation.state"].tolist() == pytest.approx([time_ms / 1000, 5])
+
+
+def histories(messages: list[tuple[int, int]]) -> tuple[History, list[int]]:
+    """Return a history of messages, given their times and arrivals, and what an export keeps."""
+    history = History()
+    for time_ms, arrival_ms in messages:
+        history.add(time_ms * MS, arrival_ms * MS, time_ms)
+    times, arrivals = (np.array(each, np.int64) * MS for each in zip(*messages, strict=True))
+    count = len(messages)
+    series = Series(times, arrivals, np.empty((count, 0)), np.arange(count))
+    return history, in_order(series).times.tolist()
+
+
+@given(
+    steps=st.lists(st.integers(min_value=1, max_value=15), min_size=4, max_size=60),
+    place=st.integers(min_value=2, max_value=57),
+    error_ms=st.integers(min_value=-100_000, max_value=100_000),
+)
+def test_a_history_keeps_what_an_export_keeps(steps: list[int], place: int, error_ms: int) -> None:
+    """Of a topic with one false time, in the past or in the future, once the next one has come."""
+    arrivals = np.cumsum(steps).tolist()
+    false = min(place, len(steps) - 2)
+    times = [each + error_ms * (at == false) for at, each in enumerate(arrivals)]
+    history, exported = histories(list(zip(times, arrivals, strict=True)))
+    assert history.times == exported
+    assert [each * MS for each in history.messages] == exported
+
+
+@given(times=st.lists(st.integers(min_value=0, max_value=3_000), min_size=1, max_size=60))
+def test_a_history_is_in_order(times: list[int]) -> None:
+    """Whatever the times and however they arrive."""
+    history, _ = histories([(time, 10 * at) for at, time in enumerate(times)])
+    assert history.times == sorted(set(history.times))
+    assert [each * MS for each in history.messages] == history.times
+
+
+def test_a_simulation_that_begins_again_is_observed() -> None:
+    """Its times are before all others, and so are their arrivals."""
+    history, _ = histories([(9000, 9000), (9010, 9010), (0, 0), (10, 10)])
+    assert history.messages == [0, 10]
 
 
 def test_a_history_is_bounded() -> None:
     """A reference that is silent may not fill the memory with another camera's pictures."""
     history = History()
     for index in range(5_000):
-        history.add(index * MS // 10, index)
+        history.add(index * MS // 10, index * MS // 10, index)
     assert len(history.times) == len(history.messages) == 2_000
