@@ -21,6 +21,7 @@ from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 from aionode.interfaces.std_msgs.msg import Header
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from types import ModuleType
 
     import numpy.typing as npt
@@ -45,11 +46,13 @@ FORMATS: Final = ("BMP", "JPEG", "PNG", "TIFF", "WEBP")
 
 RVL_HEAD: Final = struct.Struct("<II")
 """The width and height before an RVL picture."""
-MOST_PIXELS: Final = 2**25
-"""Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros."""
+MOST_PIXELS: Final = 2**23
+"""Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros: no depth
+camera has as many.
+"""
 MOST_NIBBLES: Final = 9
 """Maximum nibbles of a number: enough for `MOST_PIXELS` zeros."""
-BLOCK_BYTES: Final = 2**18
+BLOCK_BYTES: Final = 2**16
 """How many bytes of RVL are unpacked at a time."""
 
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
@@ -395,17 +398,13 @@ def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> I
     is_depth = "compressedDepth" in image.format
     data = memoryview(image.data)
     if is_depth and image.format.endswith("compressedDepth rvl"):
-        depths = depths_of_rvl(data[DEPTH_HEAD.size :], image.format)
+        depths = depths_of_rvl(data[DEPTH_HEAD.size :], image.format, size)
         picture = from_numpy(depths, "mono16", image.header)
         return depth_of(picture, DEPTH_HEAD.unpack_from(data), image.format)
     try:
         file = io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data)
         picture = pillow().open(file, formats=FORMATS)
-        if size not in (None, picture.size):
-            raise MessageError(
-                "sensor_msgs/msg/CompressedImage.data",
-                f"{picture.width} by {picture.height} pixels; {size[0]} by {size[1]} fit",
-            )
+        check_size(picture.size, size)
         picture.load()
     except (OSError, SyntaxError, pillow().DecompressionBombError) as error:
         raise MessageError(
@@ -416,8 +415,21 @@ def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> I
     return depth_of(message, DEPTH_HEAD.unpack_from(data), image.format) if is_depth else message
 
 
-def depths_of_rvl(data: memoryview, format: str) -> npt.NDArray[np.uint16]:  # noqa: A002  # the field's name
-    """Return the picture of compressedDepth's lossless RVL.
+def check_size(given: tuple[int, int], wanted: tuple[int, int] | None) -> None:
+    """Raise MessageError for a picture that has another width or height than is wanted."""
+    if wanted not in (None, given):
+        raise MessageError(
+            "sensor_msgs/msg/CompressedImage.data",
+            f"{given[0]} by {given[1]} pixels; {wanted[0]} by {wanted[1]} fit",
+        )
+
+
+def depths_of_rvl(
+    data: memoryview,
+    format: str,  # noqa: A002  # the field's name
+    size: tuple[int, int] | None,
+) -> npt.NDArray[np.uint16]:
+    """Return the picture of compressedDepth's lossless RVL, which has a width and height.
 
     A number is a sequence of nibbles with three bits each, the lowest first; all but the last have
     the highest bit set. The numbers are: how many pixels are 0, how many of the following are not,
@@ -437,41 +449,53 @@ def depths_of_rvl(data: memoryview, format: str) -> npt.NDArray[np.uint16]:  # n
     count = width * height
     if not 0 < count <= MOST_PIXELS:
         raise wrong
+    check_size((width, height), size)
     data = data[RVL_HEAD.size : RVL_HEAD.size + 4 * count + 16]  # a pixel has 7 nibbles at most
     words = np.frombuffer(data[: len(data) - len(data) % 4], "<u4").astype(">u4")
-    numbers = numbers_of_rvl(words.view(np.uint8))
-    if numbers is None:
-        raise wrong
-    firsts = array("i")
-    view: Any = memoryview(numbers)  # type: ignore[arg-type]  # an array is a buffer
-    at, left = 0, count
-    while left > 0 and at + 1 < len(view):
-        followers = view[at + 1]
-        length = view[at] + followers
-        if length == 0:
-            raise wrong
-        firsts.append(at)
-        at += 2 + followers
-        left -= length
-    if left != 0 or at > len(view):
-        raise wrong
-    zeros = np.array(firsts, np.int32)
-    lengths = np.column_stack((numbers[zeros], numbers[zeros + 1])).reshape(-1)
-    is_delta = np.ones(at, bool)
-    is_delta[zeros] = is_delta[zeros + 1] = False
-    deltas = numbers[:at][is_delta]
     depths = np.zeros(count, np.uint16)
-    has_depth = np.repeat(np.arange(len(lengths)) % 2 == 1, lengths)
-    depths[has_depth] = np.cumsum((deltas >> 1) ^ -(deltas & 1), dtype=np.uint16)
-    return depths.reshape(height, width)
+    done = followers = (
+        0  # pixels, and those that have depths of the run that began in a block before
+    )
+    last = np.uint16(0)
+    rest = np.empty(0, np.int32)
+    for block in numbers_of_rvl(words.view(np.uint8)):
+        if block is None:
+            break
+        numbers = np.concatenate((rest, block))
+        view: Any = memoryview(numbers)  # type: ignore[arg-type]  # an array is a buffer
+        held, at = len(numbers), followers
+        firsts, lengths = array("i"), array("i", (0, followers))
+        left = count - done - followers
+        while left > 0 and at + 1 < held:
+            zeros, followers = view[at], view[at + 1]
+            if zeros + followers == 0 or zeros + followers > left:
+                raise wrong
+            firsts.append(at)
+            lengths.extend((zeros, followers))
+            left -= zeros + followers
+            at += 2 + followers
+        followers = max(at - held, 0)
+        lengths[-1] -= followers
+        rest = numbers[at:]
+        is_delta = np.ones(min(at, held), bool)
+        heads = np.array(firsts, np.int32)
+        is_delta[heads] = is_delta[heads + 1] = False
+        deltas = numbers[: len(is_delta)][is_delta]
+        found = last + np.cumsum((deltas >> 1) ^ -(deltas & 1), dtype=np.uint16)
+        has_depth = np.repeat(np.arange(len(lengths)) % 2 == 1, lengths)
+        depths[done : done + len(has_depth)][has_depth] = found
+        done += len(has_depth)
+        if done == count:
+            return depths.reshape(height, width)
+        last = found[-1] if len(found) else last
+    raise wrong
 
 
-def numbers_of_rvl(packed: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32] | None:
-    """Return the numbers that are packed in RVL, or None if one of them is too long.
+def numbers_of_rvl(packed: npt.NDArray[np.uint8]) -> Iterator[npt.NDArray[np.int32] | None]:
+    """Yield the numbers that are packed in RVL, and None if one of them is too long.
 
     It takes a block at a time, as the intermediate arrays are many times as large as the data.
     """
-    found = [np.empty(0, np.int32)]
     rest = np.empty(0, np.uint8)
     for begin in range(0, len(packed), BLOCK_BYTES):
         block = packed[begin : begin + BLOCK_BYTES]
@@ -481,12 +505,12 @@ def numbers_of_rvl(packed: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32] | Non
         sizes = np.diff(starts)
         rest = nibbles[starts[-1] :]
         if max(sizes.max(initial=0), len(rest)) > MOST_NIBBLES:
-            return None
+            yield None
+            return
         if len(sizes):
             place = np.arange(starts[-1]) - np.repeat(starts[:-1], sizes)
             bits = (nibbles[: starts[-1]] & 7).astype(np.int32) << (3 * place).astype(np.int32)
-            found.append(np.add.reduceat(bits, starts[:-1], dtype=np.int32))
-    return np.concatenate(found)
+            yield np.add.reduceat(bits, starts[:-1], dtype=np.int32)
 
 
 def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Image:  # noqa: A002  # the field's name

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import struct
 import sys
 import tracemalloc
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import numpy.typing as npt
@@ -356,10 +358,11 @@ def rvl(width: int, height: int, pixels: list[int]) -> bytes:
 
 @given(st.lists(st.one_of(st.just(0), st.integers(0, 65535)), min_size=1, max_size=60))
 def test_rvl_is_read_as_it_was_written(pixels: list[int]) -> None:
-    """Without loss: runs of unknown depths, and large steps in both directions."""
+    """Without loss: runs of unknown depths, and large steps in both directions, in all blocks."""
     data = bytes(12) + rvl(len(pixels), 1, pixels)
 
-    read = decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data))
+    with mock.patch("aionode.image.BLOCK_BYTES", 4):
+        read = decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data))
 
     assert (read.encoding, to_numpy(read).tolist()) == ("16UC1", [pixels])
 
@@ -397,6 +400,26 @@ def test_rvl_takes_no_more_memory_than_its_picture_needs(side: int) -> None:
         assert tracemalloc.get_traced_memory()[1] < 40 << 20
     finally:
         tracemalloc.stop()
+
+
+def test_many_short_runs_of_rvl_take_no_more_memory_than_their_picture() -> None:
+    """Hostile data have one for every pixel, and a number for every nibble."""
+    runs = bytes.fromhex("1110") * (1 << 17)  # no depth, depth, its difference; then depth alone
+    data = bytes(12) + struct.pack("<II", 1 << 9, 3 << 8) + runs
+    tracemalloc.start()
+    try:
+        with contextlib.suppress(MessageError):
+            decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data))
+        assert tracemalloc.get_traced_memory()[1] < 16 << 20
+    finally:
+        tracemalloc.stop()
+
+
+def test_rvl_of_another_size_than_wanted_is_not_decoded() -> None:
+    """As of the other formats."""
+    data = bytes(12) + struct.pack("<II", 2000, 2000) + bytes(8)
+    with pytest.raises(MessageError, match="2000 by 2000 pixels; 640 by 480 fit"):
+        decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data), (640, 480))
 
 
 @given(st.binary(max_size=80), st.integers(0, 9), st.integers(0, 9))
