@@ -202,8 +202,11 @@ def lock_of(place: Path) -> FolderLock:
 
 
 def bags_in(path: Path) -> list[Path]:
-    """Return a bag, or the bags in a folder, in the order of their names."""
-    if not path.is_dir() or is_bag(path):
+    """Return a bag, or the bags in a folder, in the order of their names.
+
+    A bag has no bags in it: a recording beside them does not make their folder one.
+    """
+    if not path.is_dir() or (path / FILE_NAME).exists():
         return [path]
     return [each for each in sorted(path.iterdir()) if each.is_dir() and is_bag(each)] or [path]
 

@@ -208,6 +208,17 @@ def test_no_bag_of_a_folder_is_left_out(tmp_path: Path) -> None:
     assert export(tmp_path / "out", [runs], contract=contract(), jobs=1).episodes == 1
 
 
+@pytest.mark.parametrize("stray", ["old.mcap", "old.db3", "old.mcap.zstd"])
+def test_a_file_beside_episodes_does_not_make_their_folder_a_bag(
+    tmp_path: Path, stray: str
+) -> None:
+    """A recording that somebody copied there; it can be named itself."""
+    runs = tmp_path / "runs"
+    demonstration(runs / "a", length_sec=0.5)
+    (runs / stray).touch()
+    assert export(tmp_path / "out", [runs], contract=contract(), jobs=1).episodes == 1
+
+
 def test_topics_that_arrive_late_are_aligned_by_their_stamps(tmp_path: Path) -> None:
     """The camera's driver takes 40 ms, the joints' 2 ms."""
     bag = demonstration(
