@@ -14,8 +14,8 @@ from aionode.errors import LeaseExpiredError
 from aionode.learn import Contract
 from lerobot_robot_aionode.background import Background
 from lerobot_robot_aionode.config import AionodeRobotConfig
+from lerobot_robot_aionode.defects.one_action import let_one_action_drive
 from lerobot_robot_aionode.keys import ACTION, action_keys, flat, observation_keys
-from lerobot_robot_aionode.one_action import let_one_action_drive
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,4 +1,11 @@
-"""A robot with a single action in `lerobot-rollout`."""
+"""`lerobot-rollout` raises IndexError for a robot with a single action.
+
+In LeRobot 0.6.1, line 117 of ``lerobot/rollout/inference/sync.py`` removes the batch dimension of
+an action by ``squeeze(0)``, and passes it to `make_robot_action`, which does so once more in line
+194 of ``lerobot/policies/utils.py``. That does nothing to several actions, but leaves no dimension
+of a single one, which is then indexed. Not reported. The workaround gives the dimension back to the
+function that removes it the second time.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +22,7 @@ PLACE = "lerobot.rollout.inference.sync"
 
 
 def let_one_action_drive() -> None:
-    """Let the rollout that runs in this process, if one does, drive a robot of one action.
-
-    LeRobot 0.6 takes the dimension of the batch off an action twice. That does nothing to several
-    actions, but leaves no dimension of a single one, which is then indexed: an IndexError. The
-    function that does it the second time is given the dimension back.
-    """
+    """Let the rollout that runs in this process, if one does, drive a robot of one action."""
     rollout = sys.modules.get(PLACE)
     given = getattr(rollout, "make_robot_action", None)
     if rollout is None or given is None or hasattr(given, "__wrapped__"):
