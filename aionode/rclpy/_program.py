@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import find_spec
 from pathlib import Path
@@ -73,6 +74,8 @@ def main(argv: Sequence[str]) -> None:
         list_imports(arguments)
     sys.path[:1] = folders["--path"] or sys.path[:1]
     shared_errors_take_names()
+    if Path(name).name == "xacro":  # its handler of errors takes for granted that this is imported
+        import_module("xml.parsers.expat")
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
     sys.argv = [str(module.__file__), *arguments]

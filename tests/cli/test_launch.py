@@ -188,3 +188,21 @@ def test_a_launch_file_in_python_runs_xacro_by_its_name(
 
     assert f'name="{package}"' in capsys.readouterr().out
     assert os.environ["PATH"] == "/usr/bin:/bin"
+
+
+def test_xacro_names_a_file_that_is_not_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """PyPI's xacro handles errors of a parser that it imports with the first file it reads."""
+    file = tmp_path / "arm.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import LogInfo\n"
+        "from launch.substitutions import Command\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([LogInfo(msg=Command('xacro /no/arm.urdf'))])\n"
+    )
+
+    assert main(["launch", str(file), "--print"]) == 1
+
+    assert "No such file or directory: /no/arm.urdf" in capsys.readouterr().err
