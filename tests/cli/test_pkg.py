@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode.cli._main import main
-from aionode.cli._nouns.pkg import executables, list_packages, prefix
-from aionode.errors import PackageNotFoundError
+from aionode.cli._nouns.pkg import executables, list_packages, manifest, prefix
+from aionode.errors import CommandError, PackageNotFoundError
 
 
 @pytest.fixture(autouse=True)
@@ -17,7 +17,9 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A workspace with a package, and nothing else installed."""
     folder = tmp_path / "src" / "my_robot"
     folder.mkdir(parents=True)
-    (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
+    (folder / "package.xml").write_text(
+        "<package><name>my_robot</name><depend>rclpy</depend><depend>std_msgs</depend></package>"
+    )
     (folder / "setup.py").write_text(
         "from setuptools import setup\n"
         "setup(entry_points={'console_scripts': ['drive = my_robot.drive:main']})\n"
@@ -71,3 +73,39 @@ def test_a_package_that_is_not_there_is_said(capsys: pytest.CaptureFixture[str])
     assert main(["pkg", "executables", "turtlsim"]) == 1
 
     assert "turtlesim" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("tag", "text"),
+    [
+        (
+            None,
+            "<package><name>my_robot</name><depend>rclpy</depend><depend>std_msgs</depend></package>\n",
+        ),
+        ("depend", "rclpy\nstd_msgs\n"),
+    ],
+)
+def test_a_package_xml_is_printed(screen: Any, tag: str | None, text: str) -> None:
+    """Whole, or the text of each element with a name."""
+    manifest("my_robot", output=screen.output, tag=tag)
+
+    assert screen.text == text
+
+
+@pytest.mark.parametrize(
+    ("package", "content", "text"),
+    [
+        ("my_robot", None, "no element 'version'; it has depend, name"),
+        ("my_robot", "<package><name>my_robot</name>", "cannot be read: no element found"),
+        ("turtlesim", None, "turtlesim: aionode stands in for it, without a package.xml"),
+    ],
+)
+def test_a_package_xml_that_cannot_be_printed_is_said(
+    screen: Any, workspace: Path, package: str, content: str | None, text: str
+) -> None:
+    """With what there is instead."""
+    if content is not None:
+        (workspace / "src" / "my_robot" / "package.xml").write_text(content)
+
+    with pytest.raises(CommandError, match=text):
+        manifest(package, output=screen.output, tag="version")

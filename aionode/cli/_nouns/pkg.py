@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import click
 
 from aionode._packages import Packages, around, standard_packages
+from aionode._process.bounded_files import read_file
 from aionode.cli._support.command import command
+from aionode.errors import CommandError
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
 
-__all__ = ["executables", "list_packages", "pkg_command", "prefix"]
+__all__ = ["executables", "list_packages", "manifest", "pkg_command", "prefix"]
 
 
 @click.group("pkg")
@@ -71,3 +73,38 @@ def prefix(package_name: str, *, output: Output, share: bool = False) -> None:
     source = packages.sources().get(package_name)
     folder = packages.share(package_name) if share else source or packages.prefix(package_name)
     output.item(str(folder), {"name": package_name, "folder": str(folder)})
+
+
+@command(
+    pkg_command,
+    "xml",
+    click.argument("package_name"),
+    click.option("-t", "--tag", help="Show only the text of the elements of this name."),
+    node=False,
+)
+def manifest(package_name: str, *, output: Output, tag: str | None = None) -> None:
+    """Print the package.xml of a package.
+
+    Raises:
+        CommandError: it cannot be read, or has no such element.
+        PackageNotFoundError: there is no such package.
+    """
+    from xml.etree import ElementTree as ET  # few commands need it
+
+    packages, names = known()
+    if package_name not in packages.names() and package_name in names:
+        raise CommandError(f"{package_name}: aionode stands in for it, without a package.xml")
+    file = (packages.sources().get(package_name) or packages.share(package_name)) / "package.xml"
+    try:
+        root = ET.fromstring(read_file(file))  # noqa: S314  # of the user, and bounded
+    except (OSError, ET.ParseError) as error:
+        raise CommandError(f"{file} cannot be read: {error}") from error
+    if tag is None:
+        text = ET.tostring(root, encoding="unicode")
+        output.item(text, {"name": package_name, "xml": text})
+        return
+    found = [element.text or "" for element in root.findall(tag)]
+    if not found:
+        have = ", ".join(sorted({element.tag for element in root}))
+        raise CommandError(f"{file}: no element {tag!r}; it has {have}")
+    output.items([(text, {"name": package_name, tag: text}) for text in found])
