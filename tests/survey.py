@@ -80,7 +80,12 @@ def missing_in(clone: Path, aionode: Aionode) -> Iterator[tuple[Path, frozenset[
         return
     shown: dict[Path, set[str]] = {}
     file = clone
-    for line in aionode(clone, "run", "--check", str(clone)).stdout.splitlines():
+    try:
+        checked = aionode(clone, "run", "--check", str(clone)).stdout
+    except subprocess.TimeoutExpired:
+        say(f"{clone}: {TOO_LONG}, so none of its {len(programs)} programs is counted")
+        return
+    for line in checked.splitlines():
         if not line.startswith("  "):
             file = Path(line)
             shown[file] = set()
