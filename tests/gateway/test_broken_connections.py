@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import re
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -478,7 +479,9 @@ async def test_parts_without_bytes_do_not_pile_up() -> None:
         with contextlib.suppress(*CLOSED):
             writer.write(frame(b"", TEXT, first=0) + frame(b"", 0, first=0) * 10_001)
             await writer.drain()
-        assert await closed(reader) == b""
+        said = await closed(reader)
+        # On a busy computer the loop stands still, after which the gateway sends a ping.
+        assert re.sub(rb"\x89\x08.{8}", b"", said, flags=re.DOTALL) == b""
         await until(lambda: not gateway.stats.sessions)
         writer.close()
 
