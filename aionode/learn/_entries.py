@@ -160,12 +160,17 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         Raises:
             MessageError: the message lacks one of them, or one is not finite (a ValueError).
         """
+        numbers = np.array([number_at(message, path) for path in self.paths], np.float64)
+        self.replace_infinities(numbers)
         with np.errstate(over="ignore"):  # what float32 cannot hold is not finite
-            found = np.array([number_at(message, path) for path in self.paths], np.float32)
+            found = numbers.astype(np.float32)
         if not np.isfinite(found).all():
             place = int(np.flatnonzero(~np.isfinite(found))[0])
             raise MessageError(f"{self.type}.{self.paths[place]}", f"{found[place]}, not finite")
         return found
+
+    def replace_infinities(self, numbers: npt.NDArray[np.float64]) -> None:
+        """Put finite numbers in place of infinite ones that mean something."""
 
     def time_of(self, message: Any, received: int) -> int:
         """Return the time of a message in nanoseconds, from its header or of its arrival.
@@ -185,11 +190,14 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         image: ``color``, ``mono`` or ``depth`` if messages are images; None for numbers.
         height: The height of the images in pixels.
         width: Their width.
+        infinity: The number that stands for infinity, as in a scan for a beam without a return; by
+            default, a message with one is refused. Such numbers are not interpolated by default.
     """
 
     image: Literal["color", "mono", "depth"] | None = None
     height: int = 0
     width: int = 0
+    infinity: float | None = None
 
     def check_fields(self) -> None:
         """Raise ValueError for a path that the message lacks, or an image without a size."""
@@ -197,6 +205,12 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
             if self.type in IMAGES:
                 raise ValueError("image: none; color, mono or depth fits for pictures")
             super().check_fields()
+            if self.infinity is not None and not abs(self.infinity) <= float(
+                np.finfo(np.float32).max
+            ):
+                raise ValueError(f"infinity: {self.infinity:g}; a finite number fits")
+        elif self.infinity is not None:
+            raise ValueError("infinity: pictures have none")
         elif self.type not in IMAGES:
             raise ValueError(f"image: {self.type} is no picture; {' or '.join(IMAGES)} fits")
         elif self.fields or self.names:
@@ -213,8 +227,13 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def is_interpolated(self) -> bool:
         """Whether a value between two messages is interpolated."""
         return self.resample == "interpolate" or (
-            not self.resample and self.image is None and self.has_floats
+            not self.resample and self.image is None and self.infinity is None and self.has_floats
         )
+
+    def replace_infinities(self, numbers: npt.NDArray[np.float64]) -> None:
+        """Put `infinity` in place of infinite numbers, if the contract has it."""
+        if self.infinity is not None:
+            numbers[numbers == math.inf] = self.infinity
 
     @property
     def shape(self) -> tuple[int, ...]:

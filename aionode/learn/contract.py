@@ -183,8 +183,12 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         """Return the plain values that `from_dict` takes."""
         given: dict[str, Any] = listed(msgspec.to_builtins(self))
         for entry in (*given["observations"], *given["actions"]):
-            for key in [key for key, value in entry.items() if value in ((), [], "", None, {}, 0)]:
-                del entry[key]
+            for key, value in list(entry.items()):
+                # Of a limit, or of what stands for infinity, 0 is no default.
+                if value in ((), [], "", None, {}) or (
+                    value == 0 and key in ("height", "width", "max_age")
+                ):
+                    del entry[key]
             for key in ("lower", "upper"):
                 if key in entry and entry[key] in (math.inf, -math.inf):
                     del entry[key]

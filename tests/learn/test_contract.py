@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from msgspec import structs
 from aionode import image
 from aionode.errors import ContractError, MessageError
 from aionode.interfaces.builtin_interfaces.msg import Time
-from aionode.interfaces.sensor_msgs.msg import Image, JointState
+from aionode.interfaces.sensor_msgs.msg import Image, JointState, LaserScan
 from aionode.learn import Contract, Observation, contract
 
 TEXT = """\
@@ -190,6 +191,53 @@ def test_the_time_is_that_of_the_header_or_of_arrival(tmp_path: Path) -> None:
     assert front.time_of(message, 7) == 7
     message.header.stamp = Time(sec=2, nanosec=5)
     assert front.time_of(message, 7) == 2_000_000_005
+
+
+JOINTS = "sensor_msgs/msg/JointState"
+SCAN: dict[str, Any] = {
+    "feature": "observation.scan",
+    "topic": "/scan",
+    "type": "sensor_msgs/msg/LaserScan",
+    "fields": ["ranges.0", "ranges.1"],
+}
+
+
+@pytest.mark.parametrize("infinity", [12.0, 0.0])
+def test_a_number_may_stand_for_infinity(infinity: float) -> None:
+    """A scan has it for a beam that does not return; a mean of both would be no distance."""
+    scan = Observation(**SCAN, infinity=infinity)
+    assert scan.value(LaserScan(ranges=[1.5, math.inf])).tolist() == [1.5, infinity]
+    assert not scan.is_interpolated
+
+
+@pytest.mark.parametrize("number", [math.nan, -math.inf])
+def test_nothing_stands_for_other_numbers_that_are_not_finite(number: float) -> None:
+    """A beam that failed, or one that hit something too near, is no free space."""
+    scan = Observation(**SCAN, infinity=12.0)
+    with pytest.raises(MessageError, match=r"ranges\.1: .*, not finite"):
+        scan.value(LaserScan(ranges=[1.5, number]))
+
+
+def test_a_number_beyond_32_bits_is_not_infinity() -> None:
+    """It is a broken message."""
+    state = Observation(**SCAN | {"type": JOINTS, "fields": ["position.0"]}, infinity=12.0)
+    with pytest.raises(MessageError, match="not finite"):
+        state.value(JointState(position=[1e300]))
+
+
+@pytest.mark.parametrize("infinity", [math.inf, math.nan, 1e300])
+def test_what_stands_for_infinity_is_finite(infinity: float) -> None:
+    """In 32 bits."""
+    with pytest.raises(ValueError, match=r"infinity: .*; a finite number fits"):
+        Observation(**SCAN, infinity=infinity)
+
+
+def test_a_zero_is_kept_in_a_contract(tmp_path: Path) -> None:
+    """Of a limit, and of what stands for infinity; a bag has a copy of its contract."""
+    given = loaded(tmp_path).to_dict()
+    given["observations"][1]["infinity"] = 0.0
+    given["actions"][0] |= {"lower": 0.0, "upper": 0.0}
+    assert Contract.from_dict(given).to_dict() == given
 
 
 def test_actions_are_clamped_and_counted(tmp_path: Path) -> None:

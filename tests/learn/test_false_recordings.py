@@ -233,6 +233,19 @@ def test_compressed_pictures_that_are_false_are_left_out(tmp_path: Path) -> None
     assert found.rows == 24
 
 
+def test_infinite_numbers_make_rows_if_the_contract_says_what_they_mean(tmp_path: Path) -> None:
+    """As for a beam of a scan that does not return."""
+    observations = contract().to_dict()["observations"]
+    observations[1] |= {"infinity": 0.25, "stamp": "receive"}
+    edit = false("/joint_states", at(position=[float("inf")]), ALL)
+    run = demonstration(tmp_path / "run", edit=edit, length_sec=1)
+    made = contract(observations=observations)
+    found = export(tmp_path / "out", [run], contract=made, jobs=1)
+    assert "not finite" not in found.text
+    read = Reader(tmp_path / "out")
+    assert {float(read[index]["observation.state"][0]) for index in range(len(read))} == {0.25}
+
+
 def test_a_bag_that_was_recorded_in_a_loop_is_read_once(tmp_path: Path) -> None:
     """The times of each turn are those of the first one: a mixture would be of no demonstration."""
 

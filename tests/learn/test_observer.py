@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from collections.abc import AsyncIterator, Coroutine
 from typing import Any
 
@@ -132,6 +133,20 @@ async def test_everything_is_as_of_the_reference(robot: Robot) -> None:
             "observation.images.front": 0.0,
             "observation.state": pytest.approx(0.175),
         }
+
+
+async def test_infinite_numbers_are_observed_if_the_contract_says_what_they_mean(
+    robot: Robot,
+) -> None:
+    """As in the rows that an export makes."""
+    given = CONTRACT.to_dict()
+    given["observations"][1]["infinity"] = 12.0
+    async with Contract.from_dict(given).observe(robot.node) as observations:
+        await robot.move("arm", 950, math.inf)
+        await robot.move("gripper", 800, 5.0)
+        await robot.show(975)
+        seen = await next_of(observations.at())
+        assert seen.values["observation.state"].tolist() == [12.0, 5.0]
 
 
 async def test_the_newest_reference_counts_and_none_twice(robot: Robot) -> None:
