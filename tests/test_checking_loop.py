@@ -31,7 +31,7 @@ async def make_a_future() -> asyncio.Future[None]:
 def test_a_foreign_thread_is_refused() -> None:
     """Without the check, the loop would not wake up, or break now and then."""
     with (
-        asyncio.Runner(loop_factory=CheckingLoop) as runner,
+        asyncio.Runner(debug=False, loop_factory=CheckingLoop) as runner,
         pytest.raises(RuntimeError, match="Non-thread-safe operation"),
     ):
         runner.run(call_from_a_thread())
@@ -40,7 +40,7 @@ def test_a_foreign_thread_is_refused() -> None:
 def test_a_forgotten_coroutine_is_reported_with_where_it_was_created() -> None:
     """Without the place, the report names a coroutine only."""
     with (
-        asyncio.Runner(loop_factory=CheckingLoop) as runner,
+        asyncio.Runner(debug=False, loop_factory=CheckingLoop) as runner,
         pytest.warns(RuntimeWarning, match=r"never awaited\n(.*\n)*.*leave_out_an_await"),
     ):
         runner.run(leave_out_an_await())
@@ -48,5 +48,5 @@ def test_a_forgotten_coroutine_is_reported_with_where_it_was_created() -> None:
 
 def test_futures_record_no_stack() -> None:
     """Recording stacks takes most of the time of many tests."""
-    with asyncio.Runner(loop_factory=CheckingLoop) as runner:
+    with asyncio.Runner(debug=False, loop_factory=CheckingLoop) as runner:
         assert "created at" not in repr(runner.run(make_a_future()))

@@ -15,8 +15,11 @@ class CheckingLoop(asyncio.SelectorEventLoop):
 
     def __init__(self) -> None:
         super().__init__()
-        self.set_debug(True)
         self.slow_callback_duration = 60.0  # measuring is the business of benchmarks
+
+    def set_debug(self, enabled: bool) -> None:
+        """Keep the checks: the runner of pytest-asyncio would switch them off."""
+        super().set_debug(True)
 
     def get_debug(self) -> bool:
         """Return False, for futures, tasks and handles."""
