@@ -207,7 +207,8 @@ def pytest_asyncio_loop_factories(
 ) -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
     """Run each async test on asyncio and on uvloop; not make what would only be deselected.
 
-    With "not first_loop" among the selected marks, what does not depend on the loop runs on uvloop.
+    With "not first_loop" among the selected marks, what does not depend on the loop runs on uvloop;
+    tests of processes are made for both loops, so that "second_loop" can select from them.
     """
     factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {
         "asyncio": CheckingLoop,
@@ -220,6 +221,8 @@ def pytest_asyncio_loop_factories(
         left_out = ""
     elif "not second_loop" in expression:
         left_out = "uvloop"
+    elif item.nodeid.startswith(PROCESSES) or item.get_closest_marker("processes"):
+        left_out = ""
     else:
         left_out = "asyncio" if "not first_loop" in expression else ""
     return {name: factory for name, factory in factories.items() if name != left_out}
