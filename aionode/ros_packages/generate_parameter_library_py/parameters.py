@@ -1,4 +1,4 @@
-"""The classes that generate_parameter_library would generate of a YAML file, without a build."""
+"""The classes that generate_parameter_library would generate from a YAML file, without a build."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rclpy.time import Time
 __all__ = ["Listener", "Struct", "classes_of"]
 
 Tree = dict[str, "Field | Tree"]
-"""A struct: its fields and structs by name; ``__map_X`` is that of each entry of X."""
+"""A struct: its fields and structs by name; ``__map_X`` is the struct of each entry of X."""
 
 MAP: Final = "__map_"
 TYPES: Final = {
@@ -47,7 +47,7 @@ KEYS: Final = {
     "validation",
 }
 INT_LIMITS: Final = (-(2**31) - 1, 2**31 - 1)
-"""The bounds of an integer that has one on the other side, as in the original."""
+"""The default bounds of an integer that is bounded on one side only, as in the original."""
 
 
 class Field(NamedTuple):
@@ -55,9 +55,9 @@ class Field(NamedTuple):
 
     Attributes:
         kind: Its type.
-        default: Its value until one is set; None if one has to be.
-        descriptor: What nodes are told about it.
-        checks: Functions of a parameter that return what is wrong with it.
+        default: Its value until one is set; None if one has to be set.
+        descriptor: The descriptor with which it is declared.
+        checks: Functions that take a parameter and return what is wrong with it.
     """
 
     kind: Any
@@ -71,7 +71,7 @@ class Field(NamedTuple):
 
 
 class Struct:
-    """Parameters as attributes, and structs of more; the base of the class ``Params``."""
+    """Parameters and nested structs as attributes; the base of the class ``Params``."""
 
     _tree: Tree
 
@@ -85,7 +85,7 @@ class Struct:
             setattr(self, name, value)
 
     def add_entry(self, name: str) -> Any:
-        """Return the struct of an entry of a map, which is made if it is not there."""
+        """Return the struct of an entry of a map, which is created if it is missing."""
         if not hasattr(self, name):
             inner = next(part for key, part in self._tree.items() if key.startswith(MAP))
             setattr(self, name, Struct(inner if isinstance(inner, dict) else {}))
@@ -103,11 +103,11 @@ class Struct:
 
 
 class Listener:
-    """Declares the parameters of a node, and follows them; the base of ``ParamListener``.
+    """Declares the parameters of a node and follows their changes; the base of ``ParamListener``.
 
     Args:
         node: The node.
-        prefix: What the names of the parameters begin with.
+        prefix: The prefix of the names of the parameters.
 
     Raises:
         InvalidParameterValueException: A value is not valid.
@@ -128,18 +128,18 @@ class Listener:
         node.add_on_set_parameters_callback(self.update)
 
     def get_params(self) -> Any:
-        """Return the parameters as they are now."""
+        """Return the current parameters."""
         return copy.deepcopy(self.params_)
 
     def is_old(self, other_param: Any) -> bool:
-        """Return whether parameters have changed since they were got."""
+        """Return whether parameters have changed since they were last read."""
         return bool(self.params_.stamp_ != other_param.stamp_)
 
     def unpack_parameter_dict(self, namespace: str, parameter_dict: dict[str, Any]) -> list[Any]:
-        """Return the parameters of a dict of dicts.
+        """Return the parameters in a dict of dicts.
 
         Args:
-            namespace: What their names begin with.
+            namespace: The prefix of their names.
             parameter_dict: The dict.
         """
         parameters = []
@@ -151,15 +151,15 @@ class Listener:
         return parameters
 
     def set_params_from_dict(self, param_dict: dict[str, Any]) -> None:
-        """Change the parameters here, not those of the node, as a dict of dicts says."""
+        """Set the parameters here, not those of the node, from a dict of dicts."""
         self.update(self.unpack_parameter_dict("", param_dict))
 
     def set_user_callback(self, callback: Callable[[Any], Any]) -> None:
-        """Have a function called with the parameters after each change."""
+        """Set the function that is called with the parameters after each change."""
         self.user_callback = callback
 
     def clear_user_callback(self) -> None:
-        """Call nothing after a change."""
+        """Remove the function that is called after changes."""
         self.user_callback = None
 
     def refresh_dynamic_parameters(self) -> None:
@@ -169,7 +169,7 @@ class Listener:
         self.update_internal_params(params)
 
     def update(self, parameters: list[Any]) -> Any:
-        """Take new values of the node, unless one of them is not valid."""
+        """Accept new values from the node, unless one of them is invalid."""
         params = self.get_params()
         known = {
             name: (place, last, field)
@@ -195,7 +195,7 @@ class Listener:
         self.params_ = updated_params
 
     def declare_params(self) -> None:
-        """Declare all parameters, and take their values."""
+        """Declare all parameters, and read their values."""
         params = self.get_params()
         self._declare(params, self._static(params))
         self._declare(params, self._dynamic(params))
@@ -218,13 +218,13 @@ class Listener:
             self.logger_.debug(f"{name}: {parameter.type_.name} = {parameter.value}")
 
     def _static(self, params: Any) -> Iterator[tuple[str, Any, str, Field]]:
-        """Yield the name of each parameter that is in no map, its struct, attribute and field."""
+        """Yield the name, struct, attribute and field of each parameter that is in no map."""
         for path, field in fields_of(params._tree):
             if not any(part.startswith(MAP) for part in path):
                 yield self.prefix_ + ".".join(path), walked(params, path[:-1]), path[-1], field
 
     def _dynamic(self, params: Any) -> Iterator[tuple[str, Any, str, Field]]:
-        """Yield the same for the parameters of all entries of maps."""
+        """Yield the same for the parameters of all map entries."""
         for path, field in fields_of(params._tree):
             maps = [part.removeprefix(MAP) for part in path if part.startswith(MAP)]
             if not maps:
@@ -248,7 +248,7 @@ def walked(params: Any, path: list[str]) -> Any:
 
 
 def entries_of(params: Any, above: list[str], name: str) -> list[str]:
-    """Return the entries of a map: the strings of the nearest parameter of that name above it."""
+    """Return the entries of a map: the strings in the nearest parameter of that name above it."""
     for length in range(len(above), -1, -1):
         found = getattr(walked(params, above[:length]), name, None)
         if found is not None and not isinstance(found, Struct):
@@ -266,16 +266,16 @@ def fields_of(tree: Tree, *above: str) -> Iterator[tuple[list[str], Field]]:
 
 
 def classes_of(file: Path, validators: str) -> dict[str, Any]:
-    """Return what a generated module has: a class by the name of the file's only key.
+    """Return the content of a generated module: a class named after the file's only key.
 
-    It has the classes ``Params`` and ``ParamListener``.
+    That class contains the classes ``Params`` and ``ParamListener``.
 
     Args:
         file: The YAML file that describes the parameters.
-        validators: The module with more validators; empty without one.
+        validators: The module with further validators; empty for none.
 
     Raises:
-        ImportError: The file cannot be read, or is no such description.
+        ImportError: The file cannot be read, or does not describe parameters.
     """
     try:
         content = loaded_yaml(file.read_bytes())
@@ -311,7 +311,7 @@ def tree_of(described: Any, custom: Any, where: str) -> Tree:
     """Return the struct that a part of a file describes.
 
     Raises:
-        ValueError: It does not.
+        ValueError: It describes none.
     """
     if not isinstance(described, dict):
         raise ValueError(f"{where}: neither a parameter nor a group of them")
@@ -335,7 +335,7 @@ def field_of(described: dict[str, Any], custom: Any, where: str) -> Field:
     """Return the parameter that a part of a file describes.
 
     Raises:
-        ValueError: It does not.
+        ValueError: It describes none.
     """
     unknown = sorted(map(str, described.keys() - KEYS))
     if unknown or not isinstance(described.get("type"), str):
@@ -374,7 +374,7 @@ def field_of(described: dict[str, Any], custom: Any, where: str) -> Field:
 
 
 def default_of(value: Any, base: str, is_array: bool, where: str) -> Any:
-    """Return a default; None for none.
+    """Return a default; None if there is none.
 
     Raises:
         ValueError: It has another type.
@@ -392,7 +392,7 @@ def default_of(value: Any, base: str, is_array: bool, where: str) -> Any:
 
 
 def limits_of(arguments: dict[str, list[Any]], base: str) -> tuple[Any, Any] | None:
-    """Return the least and the greatest number that validators let pass, if they limit it."""
+    """Return the smallest and largest number that validators accept, if they limit it."""
     if base not in {"int", "double"}:
         return None
     step = 1 if base == "int" else sys.float_info.epsilon
@@ -416,7 +416,7 @@ def limits_of(arguments: dict[str, list[Any]], base: str) -> tuple[Any, Any] | N
 
 
 def check_of(key: str, arguments: list[Any], custom: Any, where: str) -> Callable[[Any], str]:
-    """Return the function that a validator is, with its arguments.
+    """Return a validator as a function, with its arguments bound.
 
     Raises:
         ValueError: There is no such validator.

@@ -1,4 +1,4 @@
-"""The validators that a description of parameters names."""
+"""The validators that descriptions of parameters name."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ __all__ = ["ParameterValidators"]
 
 
 def compared(param: Any, fits: bool, what: str, value: Any) -> str:
-    """Return what is wrong with a parameter that is not so."""
+    """Return the error text of a parameter for which a comparison fails; empty if it holds."""
     how = f"with the value {param.value} must be {what} {value}"
     return "" if fits else f"Parameter '{param.name}' {how}"
 
 
 def measured(param: Any, fits: bool, what: str, length: int) -> str:
-    """Return what is wrong with a parameter whose length is not so."""
+    """Return the error text of a parameter of a wrong length; empty if it is right."""
     how = f"is '{len(param.value)}' but must be {what} {length}"
     return "" if fits else f"Length of parameter '{param.name}' {how}"
 
@@ -25,32 +25,32 @@ class ParameterValidators:
 
     @staticmethod
     def lt(param: Any, value: Any) -> str:
-        """Check that a number is less."""
+        """Check that a number is less than a value."""
         return compared(param, param.value < value, "less than", value)
 
     @staticmethod
     def gt(param: Any, value: Any) -> str:
-        """Check that a number is greater."""
+        """Check that a number is greater than a value."""
         return compared(param, param.value > value, "greater than", value)
 
     @staticmethod
     def lt_eq(param: Any, value: Any) -> str:
-        """Check that a number is at most this."""
+        """Check that a number is at most a value."""
         return compared(param, param.value <= value, "below upper bound of", value)
 
     @staticmethod
     def gt_eq(param: Any, value: Any) -> str:
-        """Check that a number is at least this."""
+        """Check that a number is at least a value."""
         return compared(param, param.value >= value, "above lower bound of", value)
 
     @staticmethod
     def not_empty(param: Any) -> str:
-        """Check that there is something in it."""
+        """Check that a text or array is not empty."""
         return "" if len(param.value) else f"Parameter '{param.name}' cannot be empty"
 
     @staticmethod
     def one_of(param: Any, values: Sequence[Any]) -> str:
-        """Check that it is one of these."""
+        """Check that a value is in a set."""
         if param.value in values:
             return ""
         how = f"with the value '{param.value}' is not in the set {values}"
@@ -58,14 +58,14 @@ class ParameterValidators:
 
     @staticmethod
     def unique(param: Any) -> str:
-        """Check that nothing is there twice."""
+        """Check that no entry occurs twice."""
         if len(set(param.value)) == len(param.value):
             return ""
         return f"Parameter '{param.name}' must only contain unique values"
 
     @staticmethod
     def subset_of(param: Any, values: Sequence[Any]) -> str:
-        """Check that each is one of these."""
+        """Check that each entry is in a set."""
         for value in param.value:
             if value not in values:
                 return f"Entry '{value}' in parameter '{param.name}' is not in the set {values}"
@@ -73,22 +73,22 @@ class ParameterValidators:
 
     @staticmethod
     def fixed_size(param: Any, length: int) -> str:
-        """Check that it has this length."""
+        """Check that a text or array has a length."""
         return measured(param, len(param.value) == length, "equal to", length)
 
     @staticmethod
     def size_gt(param: Any, length: int) -> str:
-        """Check that it is longer."""
+        """Check that a text or array is longer than a length."""
         return measured(param, len(param.value) > length, "greater than", length)
 
     @staticmethod
     def size_lt(param: Any, length: int) -> str:
-        """Check that it is shorter."""
+        """Check that a text or array is shorter than a length."""
         return measured(param, len(param.value) < length, "less than", length)
 
     @staticmethod
     def element_bounds(param: Any, lower: Any, upper: Any) -> str:
-        """Check that each number is from here to there."""
+        """Check that each number is within bounds."""
         if all(lower <= value <= upper for value in param.value):
             return ""
         where = f"must be within bounds [{lower}, {upper}]"
@@ -96,7 +96,7 @@ class ParameterValidators:
 
     @staticmethod
     def lower_element_bounds(param: Any, lower: Any) -> str:
-        """Check that each number is at least this."""
+        """Check that each number is at least a value."""
         for value in param.value:
             if value < lower:
                 where = f"must be above lower bound of {lower}"
@@ -105,7 +105,7 @@ class ParameterValidators:
 
     @staticmethod
     def upper_element_bounds(param: Any, upper: Any) -> str:
-        """Check that each number is at most this."""
+        """Check that each number is at most a value."""
         for value in param.value:
             if value > upper:
                 where = f"must be below upper bound of {upper}"
@@ -114,7 +114,7 @@ class ParameterValidators:
 
     @staticmethod
     def bounds(param: Any, lower: Any, upper: Any) -> str:
-        """Check that a number is from here to there."""
+        """Check that a number is within bounds."""
         if lower <= param.value <= upper:
             return ""
         where = f"must be within bounds [{lower}, {upper}]"

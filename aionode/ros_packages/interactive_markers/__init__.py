@@ -1,4 +1,4 @@
-"""Programs import this as `interactive_markers`: markers that people move in RViz."""
+"""Programs import this as `interactive_markers`: markers that users move in RViz."""
 
 from interactive_markers.interactive_marker_server import InteractiveMarkerServer
 from interactive_markers.menu_handler import MenuHandler

@@ -20,13 +20,13 @@ from rclpy.duration import Duration
 __all__ = ["InteractiveMarkerServer", "MarkerContext", "UpdateContext"]
 
 TAKEN: Duration = Duration(seconds=1.0)
-"""For how long a marker that one client moves belongs to it."""
+"""How long a marker belongs to the client that last moved it."""
 
 Callback = Callable[[Any], Any]
 
 
 class MarkerContext:
-    """A marker, and what its feedback calls."""
+    """A marker, and the callbacks for its feedback."""
 
     def __init__(self, time: Any) -> None:
         self.last_feedback = time
@@ -37,7 +37,7 @@ class MarkerContext:
 
 
 class UpdateContext:
-    """What becomes of a marker with the next `applyChanges`."""
+    """The pending change of a marker, made by the next `applyChanges`."""
 
     FULL_UPDATE = 0
     POSE_UPDATE = 1
@@ -51,13 +51,13 @@ class UpdateContext:
 
 
 class InteractiveMarkerServer:
-    """Shows markers to displays, and calls functions when somebody moves or clicks one.
+    """Sends markers to displays, and calls functions when a user moves or clicks one.
 
-    Changes are shown by `applyChanges`; callbacks change at once.
+    Changes become visible with `applyChanges`; callbacks change at once.
 
     Args:
         node: The node that publishes.
-        topic_ns: The name below which the topics and the service are.
+        topic_ns: The namespace of the topics and the service.
         q_size: The depth of the topics.
     """
 
@@ -83,7 +83,7 @@ class InteractiveMarkerServer:
         )
 
     def shutdown(self) -> None:
-        """Erase all markers, and end the topics and the service; before the node is destroyed."""
+        """Erase all markers, and destroy topics and service; call it before destroying the node."""
         if self.update_pub is None:
             return
         self.clear()
@@ -100,12 +100,12 @@ class InteractiveMarkerServer:
         feedback_callback: Callback | None = None,
         feedback_type: int = DEFAULT_FEEDBACK_CALLBACK,
     ) -> None:
-        """Add a marker, or replace that of its name.
+        """Add a marker, or replace the one with its name.
 
         Args:
             marker: The marker.
             feedback_callback: Called with feedback.
-            feedback_type: The kind of feedback; by default all that has no callback of its own.
+            feedback_type: The type of feedback; by default, all types without their own callback.
         """
         with self.mutex:
             update = self.pending_updates.setdefault(marker.name, UpdateContext())
@@ -115,11 +115,11 @@ class InteractiveMarkerServer:
             self.setCallback(marker.name, feedback_callback, feedback_type)
 
     def setPose(self, name: str, pose: Any, header: Any = None) -> bool:
-        """Move a marker, and return whether there is one.
+        """Move a marker, and return whether it exists.
 
         Args:
             name: The marker's name.
-            pose: Where it is.
+            pose: Its new pose.
             header: The frame of the pose; by default that of the marker.
         """
         with self.mutex:
@@ -134,7 +134,7 @@ class InteractiveMarkerServer:
             return True
 
     def erase(self, name: str) -> bool:
-        """Remove a marker, and return whether there was one."""
+        """Remove a marker, and return whether it existed."""
         with self.mutex:
             if name not in self.pending_updates and name not in self.marker_contexts:
                 return False
@@ -156,12 +156,12 @@ class InteractiveMarkerServer:
         feedback_callback: Callback | None,
         feedback_type: int = DEFAULT_FEEDBACK_CALLBACK,
     ) -> bool:
-        """Have feedback on a marker call a function, and return whether there is one.
+        """Set the callback for feedback on a marker, and return whether the marker exists.
 
         Args:
             name: The marker's name.
-            feedback_callback: Called with feedback; None for nothing.
-            feedback_type: The kind of feedback; by default all that has no callback of its own.
+            feedback_callback: Called with feedback; None to remove the callback.
+            feedback_type: The type of feedback; by default, all types without their own callback.
         """
         with self.mutex:
             found = [self.marker_contexts.get(name), self.pending_updates.get(name)]
@@ -177,7 +177,7 @@ class InteractiveMarkerServer:
             return any(each is not None for each in found)
 
     def applyChanges(self) -> None:
-        """Show what has changed since the last call."""
+        """Publish the changes since the last call."""
         with self.mutex:
             if not self.pending_updates:
                 return
@@ -209,7 +209,7 @@ class InteractiveMarkerServer:
         message.markers.append(update.int_marker)
 
     def get(self, name: str) -> Any:
-        """Return a marker as it will be after `applyChanges`; None if there is none."""
+        """Return a marker as it will be after `applyChanges`; None if it does not exist."""
         context = self.marker_contexts.get(name)
         update = self.pending_updates.get(name)
         if update is None:
@@ -221,7 +221,7 @@ class InteractiveMarkerServer:
         return update.int_marker if is_new else None
 
     def processFeedback(self, feedback: Any) -> None:
-        """Move a marker that a client moves, and call its function."""
+        """Move a marker as a client requests, and call its callback."""
         with self.mutex:
             name = feedback.marker_name
             context = self.marker_contexts.get(name)
@@ -247,7 +247,7 @@ class InteractiveMarkerServer:
             callback(feedback)
 
     def publish(self, update: Any) -> None:
-        """Send an update, numbered."""
+        """Publish an update with the next sequence number."""
         update.seq_num = self.seq_num
         self.update_pub.publish(update)
 
@@ -259,7 +259,7 @@ class InteractiveMarkerServer:
         return response
 
     def doSetPose(self, update: UpdateContext | None, name: str, pose: Any, header: Any) -> None:
-        """Note a new pose of a marker, whose lock is held."""
+        """Record the new pose of a marker; the caller holds the lock."""
         is_new = update is not None and update.update_type == UpdateContext.FULL_UPDATE
         if update is None:
             update = self.pending_updates[name] = UpdateContext()

@@ -25,7 +25,7 @@ class EntryContext:
 
 
 class MenuHandler:
-    """A menu, which can be that of several markers."""
+    """A menu, which several markers may share."""
 
     NO_CHECKBOX = 0
     CHECKED = 1
@@ -45,12 +45,12 @@ class MenuHandler:
         command: str = "",
         callback: Callable[[Any], Any] | None = None,
     ) -> int | None:
-        """Add an entry, and return its handle; None if there is no such parent.
+        """Add an entry, and return its handle; None if the parent does not exist.
 
         Args:
-            title: What it says.
-            parent: The handle of the entry that it is below.
-            command_type: What choosing it does: by default, it sends feedback.
+            title: Its text.
+            parent: The handle of its parent entry.
+            command_type: What selecting it does; by default, it sends feedback.
             command: The command, for other types.
             callback: Called with the feedback.
         """
@@ -69,7 +69,7 @@ class MenuHandler:
         command: str,
         feedback_cb: Callable[[Any], Any] | None,
     ) -> int:
-        """Make an entry that is nowhere yet, and return its handle."""
+        """Create an entry that is not in the menu yet, and return its handle."""
         entry = EntryContext()
         entry.title = title
         entry.command_type = command_type
@@ -81,32 +81,32 @@ class MenuHandler:
         return handle
 
     def setVisible(self, handle: int, visible: bool) -> bool:
-        """Show or hide an entry, and return whether there is one."""
+        """Show or hide an entry, and return whether it exists."""
         if handle in self.entry_contexts_:
             self.entry_contexts_[handle].visible = visible
         return handle in self.entry_contexts_
 
     def setCheckState(self, handle: int, check_state: int) -> bool:
-        """Check or uncheck an entry, and return whether there is one."""
+        """Check or uncheck an entry, and return whether it exists."""
         if handle in self.entry_contexts_:
             self.entry_contexts_[handle].check_state = check_state
         return handle in self.entry_contexts_
 
     def getCheckState(self, handle: int) -> int | None:
-        """Return whether an entry is checked; None if there is none."""
+        """Return whether an entry is checked; None if it does not exist."""
         entry = self.entry_contexts_.get(handle)
         return None if entry is None else entry.check_state
 
     def getTitle(self, handle: int) -> str | None:
-        """Return what an entry says; None if there is none."""
+        """Return the text of an entry; None if it does not exist."""
         entry = self.entry_contexts_.get(handle)
         return None if entry is None else entry.title
 
     def apply(self, server: Any, marker_name: str) -> bool:
-        """Give a marker the menu as it is now, and return whether there is one.
+        """Give a marker the current menu, and return whether the marker exists.
 
         Args:
-            server: Its server, whose `applyChanges` shows it.
+            server: Its server, whose `applyChanges` makes the menu visible.
             marker_name: Its name.
         """
         marker = server.get(marker_name)
@@ -125,12 +125,12 @@ class MenuHandler:
         return True
 
     def reApply(self, server: Any) -> bool:
-        """Give all its markers the menu as it is now, and return whether they are there."""
+        """Give all its markers the current menu, and return whether they exist."""
         applied = [self.apply(server, name) for name in list(self.managed_markers_)]
         return all(applied)
 
     def processFeedback(self, feedback: Any) -> None:
-        """Call the function of the entry that was chosen."""
+        """Call the callback of the selected entry."""
         entry = self.entry_contexts_.get(feedback.menu_entry_id)
         if entry is not None and entry.feedback_cb is not None:
             entry.feedback_cb(feedback)

@@ -1,4 +1,4 @@
-"""Programs import this as `py_trees_ros`: trees of PyPI's `py_trees` on nodes of rclpy."""
+"""Programs import this as `py_trees_ros`: trees of PyPI's `py_trees` on rclpy nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Waiting for the server of a client while a tree is set up."""
+"""Waiting for servers while a tree is set up."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ __all__ = ["wait_for_server"]
 def wait_for_server(
     behaviour: Any, wait: Callable[[float], bool], timeout_sec: float, kind: str, name: str
 ) -> None:
-    """Wait for a server, and say on the behaviour and in the log what became of it.
+    """Wait for a server, and report the outcome in the log and as the behaviour's feedback.
 
     Args:
         behaviour: The behaviour that has the client.
-        wait: Waits for at most so many seconds, and returns whether the server is there.
-        timeout_sec: For how long; 0 not at all, and for less again and again with a warning.
+        wait: Waits for at most a number of seconds, and returns whether the server is there.
+        timeout_sec: Maximum time in seconds; 0 not to wait, and negative to wait again and again,
+            with a warning each time.
         kind: ``action`` or ``service``.
         name: The server's name.
 
     Raises:
-        TimedOutError: It is not there in time.
+        TimedOutError: It does not become available in time.
     """
     log = behaviour.node.get_logger()
     is_there = timeout_sec == 0 or wait(abs(timeout_sec))

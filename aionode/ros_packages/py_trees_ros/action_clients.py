@@ -33,19 +33,19 @@ STATUS_STRINGS: Final = {
 
 
 class FromBlackboard(py_trees.behaviour.Behaviour):
-    """Sends a goal that is on the blackboard, and runs until its end.
+    """Sends a goal from the blackboard, and runs until it has ended.
 
-    It fails if there is no goal, or the goal is rejected or does not succeed. A goal is cancelled
-    when the behaviour is interrupted, also if it is accepted only later.
+    It fails if there is no goal, or if the goal is rejected or does not succeed. A goal is
+    cancelled when the behaviour is interrupted, even if it is accepted only later.
 
     Args:
         name: The behaviour's name.
         action_type: The class of the action.
         action_name: The action's name.
         key: The key of the goal.
-        generate_feedback_message: Makes a text of a feedback message.
-        wait_for_server_timeout_sec: How long `setup` waits for the server; less than 0 to wait
-            for ever, with a warning whenever so many seconds have passed, and 0 not to wait.
+        generate_feedback_message: Converts a feedback message to text.
+        wait_for_server_timeout_sec: How long `setup` waits for the server; negative to wait
+            forever, with a warning each time that many seconds have passed, and 0 not to wait.
         callback_group: The callback group of the client.
     """
 
@@ -86,8 +86,8 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Create the client, and wait for the server.
 
         Raises:
-            KeyError: There is no argument ``node``.
-            TimedOutError: The server is not there in time.
+            KeyError: The argument ``node`` is missing.
+            TimedOutError: The server does not become available in time.
         """
         self.logger.debug(f"{self.qualified_name}.setup()")
         self.node = node_among(kwargs, self)
@@ -142,7 +142,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         return Status.FAILURE
 
     def terminate(self, new_status: Status) -> None:
-        """Cancel the goal, if the behaviour is interrupted."""
+        """Cancel the goal if the behaviour is interrupted."""
         self.logger.debug(f"{self.qualified_name}.terminate({self.status}->{new_status})")
         if self.status is Status.RUNNING and new_status is Status.INVALID:
             self.send_cancel_request()
@@ -153,7 +153,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             self.action_client.destroy()
 
     def feedback_callback(self, msg: Any) -> None:
-        """Show feedback of the server as that of the behaviour."""
+        """Use feedback of the server as feedback of the behaviour."""
         if self.generate_feedback_message is not None:
             self.feedback_message = f"feedback: {self.generate_feedback_message(msg)}"
             self.node.get_logger().debug(f"{self.feedback_message} [{self.qualified_name}]")
@@ -162,7 +162,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Send a goal.
 
         Raises:
-            TypeError: It is no goal of the action.
+            TypeError: It is not a goal of the action.
         """
         self.feedback_message = "sending goal ..."
         self.node.get_logger().debug(f"{self.feedback_message} [{self.qualified_name}]")
@@ -172,7 +172,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         self.send_goal_future.add_done_callback(self.goal_response_callback)
 
     def goal_response_callback(self, future: Any) -> None:
-        """Await the result of a goal that is accepted; cancel it if it is not wanted any more."""
+        """Request the result of an accepted goal; cancel it if it is no longer wanted."""
         handle = None if future.exception() is not None else future.result()
         if future is not self.send_goal_future:
             if handle is not None and handle.accepted:
@@ -193,7 +193,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             self.get_result_future.add_done_callback(self.get_result_callback)
 
     def send_cancel_request(self) -> None:
-        """Cancel the goal: now, or when the server accepts it."""
+        """Cancel the goal, now or as soon as the server accepts it."""
         self.feedback_message = f"cancelling goal ... [{self.qualified_name}]"
         self.node.get_logger().debug(self.feedback_message)
         if self.goal_handle is None:
@@ -203,7 +203,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             future.add_done_callback(self.cancel_response_callback)
 
     def cancel_response_callback(self, future: Any) -> None:
-        """Say whether the goal is being cancelled."""
+        """Log whether the server accepted the cancellation."""
         how = "successfully cancelled" if future.result().goals_canceling else "failed to cancel"
         self.feedback_message = f"goal {how} [{self.qualified_name}]"
         self.node.get_logger().debug(f"... {self.feedback_message}")
@@ -225,7 +225,7 @@ class FromConstant(FromBlackboard):
         action_type: The class of the action.
         action_name: The action's name.
         action_goal: The goal.
-        generate_feedback_message: Makes a text of a feedback message.
+        generate_feedback_message: Converts a feedback message to text.
         wait_for_server_timeout_sec: As for `FromBlackboard`.
     """
 
@@ -252,13 +252,13 @@ class FromConstant(FromBlackboard):
 
 
 class FromCallback(FromBlackboard, ABC):
-    """Sends the goal that `get_goal` of a derived class returns.
+    """Sends the goal that `get_goal` of a subclass returns.
 
     Args:
         name: The behaviour's name.
         action_type: The class of the action.
         action_name: The action's name.
-        generate_feedback_message: Makes a text of a feedback message.
+        generate_feedback_message: Converts a feedback message to text.
         wait_for_server_timeout_sec: As for `FromBlackboard`.
     """
 
@@ -282,7 +282,7 @@ class FromCallback(FromBlackboard, ABC):
         self.blackboard.register_key(key=self.key, access=Access.WRITE)
 
     def initialise(self) -> None:
-        """Ask for the goal, and send it."""
+        """Get the goal, and send it."""
         self.blackboard.set(name=self.key, value=self.get_goal())
         super().initialise()
 
@@ -299,7 +299,7 @@ class AttributesFromBlackboard(FromCallback):
         action_type: The class of the action.
         action_name: The action's name.
         goal_fields: The key of each field.
-        generate_feedback_message: Makes a text of a feedback message.
+        generate_feedback_message: Converts a feedback message to text.
         wait_for_server_timeout_sec: As for `FromBlackboard`.
     """
 
@@ -320,10 +320,10 @@ class AttributesFromBlackboard(FromCallback):
             self.blackboard.register_key(key=key, access=Access.READ)
 
     def get_goal(self) -> Any:
-        """Return a goal of what is on the blackboard.
+        """Return a goal made of values on the blackboard.
 
         Raises:
-            KeyError: A field is not there.
+            KeyError: A field is missing.
         """
         fields = {field: self.blackboard.get(key) for field, key in self.goal_fields.items()}
         return self.action_type.Goal(**fields)

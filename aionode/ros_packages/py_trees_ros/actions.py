@@ -1,4 +1,4 @@
-"""The name that `action_clients.FromConstant` had before."""
+"""The former name of `action_clients.FromConstant`."""
 
 from py_trees_ros.action_clients import FromConstant as ActionClient
 

@@ -15,7 +15,7 @@ HYSTERESIS = 5.0
 
 
 class ToBlackboard(subscribers.ToBlackboard):
-    """Writes a battery's state to ``battery``, and to ``battery_low_warning`` whether it is low.
+    """Writes a battery's state to ``battery``, and whether it is low to ``battery_low_warning``.
 
     The warning ends 5 above the threshold at which it begins.
 

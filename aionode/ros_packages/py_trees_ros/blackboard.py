@@ -1,4 +1,4 @@
-"""The blackboard for other programs: services that list it, and streams of what is on it."""
+"""The blackboard for other programs: services that list its variables, and streams of them."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ PLAIN: Final = (bool, int, float, str, bytes, list, tuple, dict, set, frozenset,
 """The types of values whose attributes are not listed."""
 DEEPEST: Final = 8
 MOST_NAMES: Final = 10_000
-"""How many names are listed at most: attributes of objects may go round in circles."""
+"""Maximum number of names listed: attributes of objects may form cycles."""
 INDENT: Final = " " * 4
 LISTENER_SEC: Final = 5.0
 """How long a stream waits for its first listener."""
 MOST_STREAMS: Final = 100
-"""How many streams are open at most; the oldest gives way."""
+"""Maximum number of open streams; the oldest is closed for a new one."""
 CANNOT_COMPARE: Final = (TypeError, AttributeError, pickle.PicklingError, RecursionError)
 
 
 class SubBlackboard:
-    """Notices whether a part of the blackboard has changed.
+    """Detects changes of a part of the blackboard.
 
     Args:
-        node: The node whose log says once that something cannot be compared.
+        node: The node that logs, once, that something cannot be compared.
     """
 
     def __init__(self, node: Any) -> None:
@@ -47,10 +47,10 @@ class SubBlackboard:
         self.warned = False
 
     def update(self, variable_names: set[str] | None) -> None:
-        """Look at the blackboard; what cannot be compared counts as changed.
+        """Compare with the blackboard; values that cannot be compared count as changed.
 
         Args:
-            variable_names: The variables to look at, such as ``battery.percentage``; None for all.
+            variable_names: The variables to compare, such as ``battery.percentage``; None for all.
         """
         names = Blackboard.keys() if variable_names is None else variable_names
         self.variable_names = names
@@ -88,7 +88,7 @@ class SubBlackboard:
 
 
 def is_there(name: str) -> bool:
-    """Return whether a variable, or the part of one, is on the blackboard."""
+    """Return whether a variable, or a part of one, is on the blackboard."""
     try:
         Blackboard.get(name)
     except (KeyError, AttributeError):
@@ -102,9 +102,10 @@ class BlackboardView:
     Args:
         node: The node that publishes.
         topic_name: The topic.
-        variable_names: The variables; none for all.
-        filter_on_visited_path: Whether only those count that behaviours of the last tick use.
-        with_activity_stream: Whether it is also told who read and wrote them.
+        variable_names: The variables; empty for all.
+        filter_on_visited_path: Whether to include only variables used by behaviours of the last
+            tick.
+        with_activity_stream: Whether to include who read and wrote them.
     """
 
     def __init__(
@@ -135,7 +136,7 @@ class BlackboardView:
         return is_there
 
     def is_abandoned(self) -> bool:
-        """Return whether no listener came in time, as far as `is_listened_to` knows, or stayed."""
+        """Return whether a stream without listeners had some before, or has waited long enough."""
         waited_ns = MachineTime.steady_ns() - self._opened_ns
         return self._had_listeners or waited_ns > LISTENER_SEC * S_TO_NS
 
@@ -147,7 +148,7 @@ class BlackboardView:
         """Return whether the part has changed since the last call.
 
         Args:
-            visited_clients: The clients of the blackboard that behaviours of the last tick have.
+            visited_clients: The blackboard clients of the behaviours of the last tick.
         """
         keys = Blackboard.keys()
         if self.filter_on_visited_path:
@@ -170,7 +171,7 @@ class BlackboardView:
         return self.sub_blackboard.is_changed
 
     def text(self) -> str:
-        """Return what the stream says now."""
+        """Return the current text of the stream."""
         if not self.with_activity_stream:
             return str(self.sub_blackboard)
         activities = py_trees.display.unicode_blackboard_activity_stream(
@@ -213,10 +214,10 @@ class Exchange:
         return names
 
     def post_tick_handler(self, visited_client_ids: Iterable[Any] | None = None) -> None:
-        """Publish what has changed to those that listen; a stream without listeners ends.
+        """Publish changes to listeners, and close streams without listeners.
 
         Args:
-            visited_client_ids: The clients of the blackboard that behaviours of this tick have.
+            visited_client_ids: The blackboard clients of the behaviours of this tick.
         """
         for view in list(self.views):
             if view.is_listened_to():
@@ -233,11 +234,11 @@ class Exchange:
             Blackboard.activity_stream.clear()
 
     def register_activity_stream_client(self) -> None:
-        """Have activities noted, for one more that shows them."""
+        """Record activities, for one more client that shows them."""
         self.activity_stream_clients += 1
 
     def unregister_activity_stream_client(self) -> None:
-        """Have activities noted for one less."""
+        """Record activities for one client less."""
         self.activity_stream_clients -= 1
 
     def _close_view(self, view: BlackboardView) -> None:
@@ -279,7 +280,7 @@ class Exchange:
 
 
 def add_names(names: list[str], name: str, value: Any, levels: int) -> None:
-    """Add the name of a value, and those of its public attributes, down to some levels."""
+    """Add the name of a value, and those of its public attributes, down to some depth."""
     if len(names) >= MOST_NAMES:
         return
     names.append(name)
@@ -294,10 +295,10 @@ def add_names(names: list[str], name: str, value: Any, levels: int) -> None:
 
 
 class BlackboardWatcher:
-    """The other side of an `Exchange`: asks its services.
+    """The client of an `Exchange`, which calls its services.
 
     Args:
-        namespace_hint: A text that is in the names of the services, if there are several trees.
+        namespace_hint: A part of the names of the services, if there are several trees.
     """
 
     def __init__(self, namespace_hint: str | None = None) -> None:
@@ -319,7 +320,7 @@ class BlackboardWatcher:
 
         Raises:
             NotFoundError: There are none.
-            MultipleFoundError: There are those of several trees.
+            MultipleFoundError: There are services of several trees.
         """
         self.node = rclpy.create_node(
             utilities.create_anonymous_node_name(node_name="watcher"),
@@ -338,7 +339,7 @@ class BlackboardWatcher:
 
         Raises:
             NotReadyError: `setup` was not called.
-            TimedOutError: The server is not there in time.
+            TimedOutError: The server does not become available in time.
         """
         name = self.service_names[key]
         cls = self.service_types[key]

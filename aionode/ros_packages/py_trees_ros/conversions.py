@@ -35,7 +35,7 @@ TYPES: Final = {
     py_trees.decorators.Decorator: Behaviour.DECORATOR,
     py_trees.behaviour.Behaviour: Behaviour.BEHAVIOUR,
 }
-"""The constant of each class of behaviours, the base of all as the last."""
+"""The constant of each class of behaviours, with the common base last."""
 
 STATUSES: Final = {
     py_trees.common.Status.INVALID: Behaviour.INVALID,
@@ -56,13 +56,13 @@ ACCESSES: Final = {
     "write": Behaviour.BLACKBOARD_ACCESS_WRITE,
     "exclusive": Behaviour.BLACKBOARD_ACCESS_EXCLUSIVE_WRITE,
 }
-"""The constant of each attribute of a client of the blackboard that names keys."""
+"""The constant of each attribute of a blackboard client that holds keys."""
 
 WITH_MEMORY: Final = "WithMemory"
 
 
 def key_of(table: dict[Any, Any], value: int, what: str) -> Any:
-    """Return what a constant of a message stands for."""
+    """Return the key in a table of a constant in a message."""
     for key, constant in table.items():
         if constant == value:
             return key
@@ -70,7 +70,7 @@ def key_of(table: dict[Any, Any], value: int, what: str) -> Any:
 
 
 def activity_stream_to_msgs() -> list[Any]:
-    """Return the blackboard's stream of activities as messages."""
+    """Return the blackboard's activity stream as messages."""
     return [
         ActivityItem(
             key=item.key,
@@ -101,7 +101,7 @@ def msg_constant_to_behaviour_type(value: int) -> Any:
 
 
 def additional_detail_to_str(behaviour: Any) -> str:
-    """Return the policy of a parallel, or whether a sequence or selector has a memory."""
+    """Return the policy of a parallel, or whether a sequence or selector has memory."""
     if isinstance(behaviour, py_trees.composites.Parallel):
         policy = type(behaviour.policy).__name__.replace("Success", "")
         if not hasattr(behaviour.policy, "children"):
@@ -151,7 +151,7 @@ def msg_to_uuid4(msg: Any) -> uuid.UUID:
 
 
 def behaviour_to_msg(behaviour: Any) -> Any:
-    """Return a behaviour as a message, without its children, which it names."""
+    """Return a behaviour as a message, which contains only the ids of its children."""
     msg = Behaviour(
         name=behaviour.name,
         class_name=f"{behaviour.__module__}.{type(behaviour).__name__}",
@@ -181,7 +181,7 @@ def behaviour_to_msg(behaviour: Any) -> Any:
 
 
 def msg_to_behaviour(msg: Any) -> Any:
-    """Return a behaviour that looks like that of a message, and does nothing.
+    """Return a behaviour that looks like the one in a message, and does nothing.
 
     Raises:
         TypeError: A constant of the message is unknown.

@@ -16,7 +16,7 @@ class MultipleFoundError(Exception):
 
 
 class NotFoundError(Exception):
-    """The graph does not have it."""
+    """It was not found in the graph."""
 
 
 class NotReadyError(Exception):

@@ -1,4 +1,4 @@
-"""A behaviour that publishes what is on the blackboard."""
+"""A behaviour that publishes a message from the blackboard."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["FromBlackboard"]
 
 
 class FromBlackboard(py_trees.behaviour.Behaviour):
-    """Publishes a message that is on the blackboard at each tick; fails if there is none.
+    """Publishes a message from the blackboard at each tick; fails if there is none.
 
     Args:
         name: The behaviour's name.
         topic_name: The topic.
         topic_type: The class of its messages.
         qos_profile: The profile of the publisher.
-        blackboard_variable: The key, or a part of what is there, such as ``state.pose``.
+        blackboard_variable: The key, or a part of its value, such as ``state.pose``.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Create the publisher.
 
         Raises:
-            KeyError: There is no argument ``node``.
+            KeyError: The argument ``node`` is missing.
         """
         self.node = node_among(kwargs, self)
         self.publisher = self.node.create_publisher(
@@ -57,7 +57,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Publish.
 
         Raises:
-            TypeError: It is no message of the topic.
+            TypeError: It is not a message of the topic's type.
         """
         self.logger.debug(f"{type(self).__name__}.update()")
         try:

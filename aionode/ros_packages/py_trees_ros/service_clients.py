@@ -17,19 +17,19 @@ __all__ = ["AttributesFromBlackboard", "FromBlackboard", "FromCallback", "FromCo
 
 
 class FromBlackboard(py_trees.behaviour.Behaviour):
-    """Calls a service with a request that is on the blackboard, and runs until its response.
+    """Calls a service with a request from the blackboard, and runs until the response.
 
-    It fails if there is no request, or the server is gone or fails. The response to a behaviour
-    that is interrupted is not awaited; what the server does is not undone.
+    It fails if there is no request, or if the server is gone or fails. The response to a behaviour
+    that is interrupted is ignored; what the server does is not undone.
 
     Args:
         name: The behaviour's name.
         service_type: The class of the service.
         service_name: The service's name.
         key_request: The key of the request.
-        key_response: The key for the response, if it shall be written.
-        wait_for_server_timeout_sec: How long `setup` waits for the server; less than 0 to wait
-            for ever, with a warning whenever so many seconds have passed, and 0 not to wait.
+        key_response: The key for the response, if it is to be written.
+        wait_for_server_timeout_sec: How long `setup` waits for the server; negative to wait
+            forever, with a warning each time that many seconds have passed, and 0 not to wait.
         callback_group: The callback group of the client.
     """
 
@@ -68,8 +68,8 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Create the client, and wait for the server.
 
         Raises:
-            KeyError: There is no argument ``node``.
-            TimedOutError: The server is not there in time.
+            KeyError: The argument ``node`` is missing.
+            TimedOutError: The server does not become available in time.
         """
         self.logger.debug(f"{self.qualified_name}.setup()")
         self.node = node_among(kwargs, self)
@@ -85,7 +85,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         )
 
     def initialise(self) -> None:
-        """Call the service, if there are a request and a server."""
+        """Call the service if there are a request and a server."""
         self.logger.debug(f"{self.qualified_name}.initialise()")
         self.service_future = None
         try:
@@ -104,7 +104,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             )
 
     def update(self) -> Status:
-        """Look whether the response is there."""
+        """Check whether the response has arrived."""
         self.logger.debug(f"{self.qualified_name}.update()")
         if self.service_future is None:
             return Status.FAILURE
@@ -119,7 +119,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         return Status.SUCCESS
 
     def terminate(self, new_status: Status) -> None:
-        """Do not wait for the response any longer."""
+        """Stop waiting for the response."""
         self.logger.debug(f"{self.qualified_name}.terminate({self.status}->{new_status})")
         if self.service_future is not None and not self.service_future.done():
             self.service_client.remove_pending_request(self.service_future)
@@ -131,14 +131,14 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
 
 
 class FromConstant(FromBlackboard):
-    """Calls a service always with the same request.
+    """Always calls a service with the same request.
 
     Args:
         name: The behaviour's name.
         service_type: The class of the service.
         service_name: The service's name.
         service_request: The request.
-        key_response: The key for the response, if it shall be written.
+        key_response: The key for the response, if it is to be written.
         wait_for_server_timeout_sec: As for `FromBlackboard`.
     """
 
@@ -160,13 +160,13 @@ class FromConstant(FromBlackboard):
 
 
 class FromCallback(FromBlackboard, ABC):
-    """Calls a service with the request that `get_request` of a derived class returns.
+    """Calls a service with the request that `get_request` of a subclass returns.
 
     Args:
         name: The behaviour's name.
         service_type: The class of the service.
         service_name: The service's name.
-        key_response: The key for the response, if it shall be written.
+        key_response: The key for the response, if it is to be written.
         wait_for_server_timeout_sec: As for `FromBlackboard`.
     """
 
@@ -190,7 +190,7 @@ class FromCallback(FromBlackboard, ABC):
         self.blackboard.register_key(key=self.key_request, access=Access.WRITE)
 
     def initialise(self) -> None:
-        """Ask for the request, and call the service."""
+        """Get the request, and call the service."""
         self.blackboard.set(name=self.key_request, value=self.get_request())
         super().initialise()
 
@@ -229,10 +229,10 @@ class AttributesFromBlackboard(FromCallback):
             self.blackboard.register_key(key=key, access=Access.READ)
 
     def get_request(self) -> Any:
-        """Return a request of what is on the blackboard.
+        """Return a request made of values on the blackboard.
 
         Raises:
-            KeyError: A field is not there.
+            KeyError: A field is missing.
         """
         fields = {field: self.blackboard.get(key) for field, key in self.request_fields.items()}
         return self.service_type.Request(**fields)

@@ -1,4 +1,4 @@
-"""Behaviours that take messages: a callback keeps the last one, and a tick looks at it."""
+"""Behaviours that receive messages: a callback keeps the last one, and ticks read it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ __all__ = ["CheckData", "EventToBlackboard", "Handler", "ToBlackboard", "WaitFor
 
 
 class Handler(py_trees.behaviour.Behaviour):
-    """Subscribes, and keeps the last message; the base of the others, which say what it means.
+    """Subscribes and keeps the last message; the base of the behaviours that interpret it.
 
     Args:
         name: The behaviour's name.
         topic_name: The topic.
         topic_type: The class of its messages.
         qos_profile: The profile of the subscription.
-        clearing_policy: When a message that has come is forgotten.
+        clearing_policy: When a received message is forgotten.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Handler(py_trees.behaviour.Behaviour):
         """Subscribe.
 
         Raises:
-            KeyError: There is no argument ``node``.
+            KeyError: The argument ``node`` is missing.
         """
         self.node = node_among(kwargs, self)
         self.subscriber = self.node.create_subscription(
@@ -57,7 +57,7 @@ class Handler(py_trees.behaviour.Behaviour):
         )
 
     def initialise(self) -> None:
-        """Forget the message, if the policy says so."""
+        """Forget the message if the policy says so."""
         self.logger.debug(f"{type(self).__name__}.initialise()")
         if self.clearing_policy is ClearingPolicy.ON_INITIALISE:
             with self.data_guard:
@@ -81,12 +81,11 @@ class CheckData(Handler):
         topic_type: The class of its messages.
         qos_profile: The profile of the subscription.
         variable_name: The field, such as ``pose.position.x``.
-        expected_value: What it is compared with.
+        expected_value: The value to compare it with.
         comparison_operator: Called with the field and the expected value.
-        fail_if_no_data: Whether it fails, rather than runs, as long as no message has come.
-        fail_if_bad_comparison: Whether it fails, rather than runs, after a comparison that is not
-            true.
-        clearing_policy: When a message that has come is forgotten.
+        fail_if_no_data: Whether it fails, rather than runs, until a message arrives.
+        fail_if_bad_comparison: Whether it fails, rather than runs, if the comparison is false.
+        clearing_policy: When a received message is forgotten.
     """
 
     def __init__(
@@ -110,7 +109,7 @@ class CheckData(Handler):
         self.fail_if_bad_comparison = fail_if_bad_comparison
 
     def update(self) -> Status:
-        """Compare."""
+        """Compare the field with the value."""
         self.logger.debug(f"{type(self).__name__}.update()")
         with self.data_guard:
             msg = self.msg
@@ -136,10 +135,10 @@ class CheckData(Handler):
 
 
 class WaitForData(Handler):
-    """Runs until a message has come, whatever is in it; takes the arguments of `Handler`."""
+    """Runs until a message arrives, whatever it contains; takes the arguments of `Handler`."""
 
     def update(self) -> Status:
-        """Look whether one has come."""
+        """Check whether a message has arrived."""
         self.logger.debug(f"{type(self).__name__}.update()")
         with self.data_guard:
             if self.msg is None:
@@ -151,17 +150,17 @@ class WaitForData(Handler):
 
 
 class ToBlackboard(Handler):
-    """Writes the last message, or fields of it, to the blackboard; runs until one has come.
+    """Writes the last message, or fields of it, to the blackboard; runs until one arrives.
 
     Args:
         name: The behaviour's name.
         topic_name: The topic.
         topic_type: The class of its messages.
         qos_profile: The profile of the subscription.
-        blackboard_variables: The key for the message; or the field of each key, such as
-            ``pose.position``, where None is the message.
-        initialise_variables: The values of keys until then; the value of the only key.
-        clearing_policy: When a message that has come is forgotten.
+        blackboard_variables: The key for the message; or the field for each key, such as
+            ``pose.position``, or None for the whole message.
+        initialise_variables: The values of the keys until then; for a single key, its value.
+        clearing_policy: When a received message is forgotten.
     """
 
     def __init__(
@@ -197,7 +196,7 @@ class ToBlackboard(Handler):
                 )
 
     def update(self) -> Status:
-        """Write it, if one has come."""
+        """Write the message if one has arrived."""
         with self.data_guard:
             if self.msg is None:
                 self.feedback_message = "no message received yet"
@@ -211,7 +210,7 @@ class ToBlackboard(Handler):
 
 
 class EventToBlackboard(Handler):
-    """Writes whether an `Empty` has come since the last tick to the blackboard; always succeeds.
+    """Writes whether an `Empty` has arrived since the last tick; always succeeds.
 
     Args:
         name: The behaviour's name.
@@ -227,7 +226,7 @@ class EventToBlackboard(Handler):
         self.blackboard.register_key(key=self.variable_name, access=Access.WRITE)
 
     def update(self) -> Status:
-        """Write it."""
+        """Write whether one has arrived."""
         self.logger.debug(f"{type(self).__name__}.update()")
         with self.data_guard:
             self.blackboard.set(self.variable_name, self.msg is not None, overwrite=True)

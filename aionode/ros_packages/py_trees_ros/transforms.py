@@ -21,14 +21,14 @@ __all__ = ["FromBlackboard", "ToBlackboard"]
 
 
 class FromBlackboard(py_trees.behaviour.Behaviour):
-    """Broadcasts a `Transform` that is on the blackboard, stamped with now; fails without one.
+    """Broadcasts a `Transform` from the blackboard with the current time; fails without one.
 
     Args:
         name: The behaviour's name.
         variable_name: The key.
-        target_frame: The frame that the transform places, its child.
-        source_frame: The frame that it is placed in.
-        static: Whether it goes to /tf_static.
+        target_frame: The child frame of the transform.
+        source_frame: The parent frame of the transform.
+        static: Whether to send it to /tf_static.
         qos_profile: The profile for /tf.
         static_qos_profile: The profile for /tf_static; tf2's by default.
     """
@@ -57,7 +57,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Create the broadcaster.
 
         Raises:
-            KeyError: There is no argument ``node``.
+            KeyError: The argument ``node`` is missing.
         """
         self.node = node_among(kwargs, self)
         self.broadcaster: Any
@@ -70,7 +70,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Broadcast.
 
         Raises:
-            TypeError: It is no `Transform`.
+            TypeError: It is not a `Transform`.
         """
         transform = None
         if self.blackboard.exists(self.variable_name):
@@ -93,13 +93,13 @@ class ToBlackboard(py_trees.behaviour.Behaviour):
 
     Args:
         name: The behaviour's name.
-        variable_name: The key; what is there is None until a transform is.
+        variable_name: The key, whose value is None until there is a transform.
         target_frame: The frame to transform to.
         source_frame: The frame to transform from.
         qos_profile: The profile for /tf.
         static_qos_profile: The profile for /tf_static; tf2's by default.
-        clearing_policy: Whether it is None again when the behaviour starts anew (ON_INITIALISE),
-            or stays (NEVER).
+        clearing_policy: Whether it is reset to None when the behaviour starts again (ON_INITIALISE)
+            or kept (NEVER).
 
     Raises:
         TypeError: The policy is ON_SUCCESS.
@@ -133,7 +133,7 @@ class ToBlackboard(py_trees.behaviour.Behaviour):
         """Listen to transforms.
 
         Raises:
-            KeyError: There is no argument ``node``.
+            KeyError: The argument ``node`` is missing.
         """
         self.node = node_among(kwargs, self)
         self.listener = TransformListener(
@@ -141,12 +141,12 @@ class ToBlackboard(py_trees.behaviour.Behaviour):
         )
 
     def initialise(self) -> None:
-        """Write None, if the policy says so."""
+        """Write None if the policy says so."""
         if self.clearing_policy is ClearingPolicy.ON_INITIALISE:
             self.blackboard.set(self.variable_name, None)
 
     def update(self) -> Status:
-        """Write the newest transform, if there is one."""
+        """Write the newest transform if there is one."""
         frames = self.target_frame, self.source_frame
         if not self.buffer.can_transform(*frames, Time()):
             self.feedback_message = "waiting for transform"

@@ -1,4 +1,4 @@
-"""Trees on a node: ticked by a timer, watched by other programs, and the watcher of them."""
+"""Trees on a node, ticked by a timer, and watchers of the trees of other programs."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ __all__ = ["BehaviourTree", "SnapshotStream", "Watcher", "WatcherMode"]
 console = py_trees.console
 
 CLOSE_ENOUGH: Final = 0.98
-"""The part of a period after which a snapshot is due, as ticks come a little early or late."""
+"""The share of a period after which a snapshot is due, as ticks may be a little early."""
 TICKS_COUNTED: Final = 10
 INDENT: Final = " " * 4
 WIDTH: Final = 80
 
 
 class SnapshotStream:
-    """Publishes what a tree looks like.
+    """Publishes snapshots of a tree.
 
     Args:
         node: The node that publishes.
-        topic_name: The topic, as `expand_topic_name` takes it.
+        topic_name: The topic, as `expand_topic_name` accepts it.
         parameters: What is published, and how often.
     """
 
@@ -62,9 +62,9 @@ class SnapshotStream:
         """What is published, and how often.
 
         Args:
-            blackboard_data: Whether with the variables that behaviours of the last tick use.
-            blackboard_activity: Whether with who read and wrote them.
-            snapshot_period: The seconds after which a tree that has not changed is published.
+            blackboard_data: Whether to include the variables that behaviours of the last tick use.
+            blackboard_activity: Whether to include who read and wrote them.
+            snapshot_period: The seconds after which an unchanged tree is published again.
         """
 
         def __init__(
@@ -97,8 +97,8 @@ class SnapshotStream:
 
         Args:
             node: The node that publishes.
-            topic_name: A name with a slash or tilde at its beginning, or one below
-                ``~/snapshot_streams``; by default one there that is still free.
+            topic_name: A name that begins with a slash or tilde, or one relative to
+                ``~/snapshot_streams``; by default, an unused name there.
         """
         if not topic_name:
             topic_name = f"_snapshots_{SnapshotStream._counter}"
@@ -117,14 +117,14 @@ class SnapshotStream:
         visited_behaviour_ids: Iterable[Any],
         visited_blackboard_client_ids: Iterable[Any],
     ) -> None:
-        """Publish a tree, if it has changed or the period is over.
+        """Publish a tree if it has changed or the period is over.
 
         Args:
             root: The tree.
             changed: Whether it has.
             statistics: The message with the times of its ticks, or None.
             visited_behaviour_ids: The behaviours of the last tick.
-            visited_blackboard_client_ids: The clients of the blackboard that they have.
+            visited_blackboard_client_ids: Their blackboard clients.
         """
         now = MachineTime.steady_ns() / S_TO_NS
         last = self.last_snapshot_timestamp
@@ -165,11 +165,11 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
     Its node has the parameters ``default_snapshot_stream`` (whether ``~/snapshots`` is published),
     ``default_snapshot_period``, ``default_snapshot_blackboard_data``,
     ``default_snapshot_blackboard_activity`` and ``setup_timeout``, and the services ``open``,
-    ``close`` and ``reconfigure`` in ``~/snapshot_streams``, beside those of an `Exchange`.
+    ``close`` and ``reconfigure`` in ``~/snapshot_streams``, besides those of an `Exchange`.
 
     Args:
-        root: The first behaviour.
-        unicode_tree_debug: Whether each tick is printed.
+        root: The root behaviour.
+        unicode_tree_debug: Whether to print each tick.
     """
 
     def __init__(self, root: Any, unicode_tree_debug: bool = False) -> None:
@@ -199,17 +199,17 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
         visitor: Any = None,
         **kwargs: Any,
     ) -> None:
-        """Create what other programs watch, and set up each behaviour with the argument ``node``.
+        """Create the topics and services for watchers, and set up each behaviour with ``node``.
 
         Args:
             node: The node; None to create one.
-            node_name: The name of the one that is created.
-            timeout: How long setting up may take, in seconds, unless a parameter says so.
-            visitor: Visits each behaviour after it is set up; by default one that logs times.
-            **kwargs: More arguments for each behaviour.
+            node_name: The name of a node that is created.
+            timeout: How long setup may take, in seconds, unless the parameter sets it.
+            visitor: Visits each behaviour after it is set up; by default, one that logs times.
+            **kwargs: Further arguments for each behaviour.
 
         Raises:
-            TypeError: The node is no node of rclpy.
+            TypeError: The node is not an rclpy node.
             TimedOutError: It takes too long.
         """
         if node is not None and not isinstance(node, Node):
@@ -252,14 +252,14 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
         self.post_tick_handlers.append(self._snapshots_post_tick_handler)
 
     def _declare(self, timeout: float) -> float:
-        """Declare the parameters, and return the one for the time of setting up."""
+        """Declare the parameters, and return the setup timeout."""
         for name, value, description in (
             ("stream", False, "enable/disable the default snapshot stream in ~/snapshots"),
             ("period", 2.0, "time between snapshots, math.inf for changes of the tree alone"),
             ("blackboard_data", True, "append visited variables to the default snapshot stream"),
             ("blackboard_activity", False, "append activities to the default snapshot stream"),
         ):
-            name = f"default_snapshot_{name}"  # noqa: PLW2901  # the whole name
+            name = f"default_snapshot_{name}"  # noqa: PLW2901  # the full name
             self.node.declare_parameter(name, value, described(name, value, description))
         name = "setup_timeout"
         descriptor = described(name, timeout, "timeout for ROS tree setup (node, pubs, subs, ...)")
@@ -283,7 +283,7 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
         return SetParametersResult(successful=True)
 
     def _default(self) -> tuple[str, SnapshotStream.Parameters]:
-        """Return the topic and the settings of the stream that is open by a parameter."""
+        """Return the topic and the settings of the stream that parameters open."""
         try:
             period, data, activity = (
                 self.node.get_parameter(f"default_snapshot_{name}").value
@@ -322,11 +322,11 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
         pre_tick_handler: Callable[[Any], None] | None = None,
         post_tick_handler: Callable[[Any], None] | None = None,
     ) -> None:
-        """Have a timer tick, and return at once; whoever spins the node calls it.
+        """Start a timer that ticks the tree while the node spins, and return at once.
 
         Args:
             period_ms: The time between two ticks, in milliseconds.
-            number_of_iterations: How often to tick; for ever by default.
+            number_of_iterations: How often to tick; forever by default.
             pre_tick_handler: Called with the tree before each tick.
             post_tick_handler: Called with the tree after each tick.
         """
@@ -361,7 +361,7 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
             self.node.destroy_node()
 
     def _on_tree_update_handler(self) -> None:
-        """Publish a tree that has a new branch, or one less."""
+        """Publish a tree to which a branch was added, or from which one was removed."""
         if self.statistics is not None:
             self.statistics.stamp = Clock().now().to_msg()
             self._publish_snapshots(changed=True)
@@ -465,18 +465,18 @@ class WatcherMode(enum.Enum):
     SNAPSHOTS = "SNAPSHOTS"
     """Prints each snapshot."""
     DOT_GRAPH = "DOT_GRAPH"
-    """Draws the first one, by xdot if it is installed, or prints it for graphviz."""
+    """Draws the first one with xdot if it is installed, or prints it for Graphviz."""
 
 
 class Watcher:
     """Shows the tree of another process.
 
     Args:
-        topic_name: The topic of its snapshots; None to have its node open one.
-        namespace_hint: A text that is in the name of its services, if there are several trees.
-        parameters: What is asked for, and shown.
-        statistics: Whether the times of ticks are shown.
-        mode: How the tree is shown.
+        topic_name: The topic of its snapshots; None to ask its node to open one.
+        namespace_hint: A part of the names of its services, if there are several trees.
+        parameters: What to request and show.
+        statistics: Whether to show the times of ticks.
+        mode: How to show the tree.
     """
 
     def __init__(
@@ -507,7 +507,7 @@ class Watcher:
         }
 
     def setup(self, timeout_sec: float) -> None:
-        """Create a node, have the tree's node open a stream, and subscribe to it.
+        """Create a node, ask the tree's node to open a stream, and subscribe to it.
 
         Raises:
             NotFoundError: There is no tree.
@@ -552,7 +552,7 @@ class Watcher:
         return future.result()
 
     def shutdown(self) -> None:
-        """Have the tree's node close the stream, and destroy the node."""
+        """Ask the tree's node to close the stream, and destroy this node."""
         if self.services["close"] is not None and self.topic_name is not None and rclpy.ok():
             request = self.service_types["close"].Request(topic_name=self.topic_name)
             future = self.services["close"].call_async(request)
@@ -564,7 +564,7 @@ class Watcher:
 
         Raises:
             NotReadyError: `setup` was not called.
-            TimedOutError: The server is not there in time.
+            TimedOutError: The server does not become available in time.
         """
         return utilities.client_of(self.node, self.service_types[key], self.service_names[key])
 
@@ -654,7 +654,8 @@ def times_of(counted: Any) -> dict[str, str]:
 def tree_of(msg: Any) -> tuple[Any, dict[Any, Any]]:
     """Return the root of a snapshot, or None, and the status of each behaviour of the last tick.
 
-    A behaviour has one parent and the root has none, so whatever the message says has no circles.
+    Each behaviour has one parent and the root has none, so the result has no cycles whatever the
+    message says.
     """
     made = {conversions.msg_to_uuid4(part.own_id): part for part in msg.behaviours}
     behaviours = {key: conversions.msg_to_behaviour(part) for key, part in made.items()}

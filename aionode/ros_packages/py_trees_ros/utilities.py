@@ -1,4 +1,4 @@
-"""What the modules of py_trees_ros have in common: quality of service, names, and groups."""
+"""What the modules of py_trees_ros share: QoS profiles, names, and groups of endpoints."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ SERVER_SEC: Final = 3.0
 
 
 def node_among(arguments: dict[str, Any], behaviour: Any) -> Any:
-    """Return the node that is among the arguments of the `setup` of a behaviour.
+    """Return the node from the arguments of a behaviour's `setup`.
 
     Raises:
-        KeyError: It is not.
+        KeyError: It is missing.
     """
     if "node" not in arguments:
         raise KeyError(
@@ -62,11 +62,11 @@ def node_among(arguments: dict[str, Any], behaviour: Any) -> Any:
 
 
 def wait_until(condition: Callable[[], bool], timeout_sec: float | None) -> bool:
-    """Block until a condition holds, which is asked ten times a second; return whether it does.
+    """Block until a condition holds, checked ten times a second; return whether it does.
 
     Args:
-        condition: What is asked, at least once.
-        timeout_sec: For how long; None to ask once.
+        condition: The condition, which is checked at least once.
+        timeout_sec: Maximum time in seconds; None to check once.
     """
     clock = Clock(clock_type=ClockType.STEADY_TIME)
     begun = MachineTime.steady_ns()
@@ -78,7 +78,7 @@ def wait_until(condition: Callable[[], bool], timeout_sec: float | None) -> bool
 
 
 def of_type(found: Iterable[Any], wanted: str, namespace: str | None) -> list[str]:
-    """Return the names that have a type, and a text in them."""
+    """Return the names with a given type that contain a text."""
     return [
         name
         for name, types in found
@@ -89,13 +89,13 @@ def of_type(found: Iterable[Any], wanted: str, namespace: str | None) -> list[st
 def find_service(
     node: Any, service_type: str, namespace: str | None = None, timeout: float = 0.5
 ) -> str:
-    """Return the full name of the only service of a type, waiting for it.
+    """Return the full name of the only service of a type, waiting until it exists.
 
     Args:
-        node: The node that looks.
+        node: The node that searches.
         service_type: The type, such as ``std_srvs/srv/Empty``.
         namespace: A text that the name must contain.
-        timeout: How long to look, in seconds.
+        timeout: How long to search, in seconds.
 
     Raises:
         NotFoundError: There is none.
@@ -117,13 +117,13 @@ def find_service(
 def find_topics(
     node: Any, topic_type: str, namespace: str | None = None, timeout: float | None = 0.5
 ) -> list[str]:
-    """Return the full names of the topics of a type, waiting for the first one.
+    """Return the full names of the topics of a type, waiting until one exists.
 
     Args:
-        node: The node that looks.
+        node: The node that searches.
         topic_type: The type, such as ``std_msgs/msg/Empty``.
         namespace: A text that the names must contain.
-        timeout: How long to look, in seconds; None to look once.
+        timeout: How long to search, in seconds; None to search once.
     """
     names: list[str] = []
 
@@ -136,12 +136,12 @@ def find_topics(
 
 
 def basename(name: str) -> str:
-    """Return what follows the last slash or tilde of a name."""
+    """Return the part of a name after its last slash or tilde."""
     return name.rsplit("/", 1)[-1].rsplit("~", 1)[-1]
 
 
 def get_py_trees_home() -> str:
-    """Return the folder for logs and the like, which need not exist."""
+    """Return the folder for logs and similar files, which may not exist."""
     return str(Path.home() / ".ros2" / "py_trees")
 
 
@@ -149,8 +149,8 @@ def client_of(node: Any, cls: Any, name: str | None) -> Any:
     """Return a client of a service that `find_service` has found.
 
     Raises:
-        NotReadyError: It was not looked for.
-        TimedOutError: Its server is not there in time.
+        NotReadyError: `find_service` was not called for it.
+        TimedOutError: Its server does not become available in time.
     """
     if name is None:
         raise exceptions.NotReadyError(f"no known '{cls}' service known [did you call setup()?]")
@@ -161,7 +161,7 @@ def client_of(node: Any, cls: Any, name: str | None) -> Any:
 
 
 def profile(durability: DurabilityPolicy) -> QoSProfile:
-    """Return a reliable profile for the last message."""
+    """Return a reliable profile with a depth of one message."""
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST,
         depth=1,
@@ -171,7 +171,7 @@ def profile(durability: DurabilityPolicy) -> QoSProfile:
 
 
 def qos_profile_latched() -> QoSProfile:
-    """Return the profile for topics whose last message those get that come later."""
+    """Return the profile for topics whose last message late subscriptions receive."""
     return profile(DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -186,7 +186,7 @@ def resolve_name(node: Any, name: str) -> str:
 
 
 def create_anonymous_node_name(node_name: str = "node") -> str:
-    """Return a name for a node with the time at its end, so that two differ."""
+    """Return a node name that ends in the time, so that no two are the same."""
     return f"{node_name}_{MachineTime.steady_ns()}"
 
 
@@ -196,11 +196,11 @@ def type_name(cls: Any) -> str:
 
 
 class Publishers:
-    """Several publishers, each as an attribute, and a service that lists them.
+    """Several publishers as attributes, and a service that lists them.
 
     Args:
         node: Their node.
-        publisher_details: For each, its attribute, topic and type, and whether it is latched.
+        publisher_details: The attribute, topic and type of each, and whether it is latched.
         introspection_topic_name: The name of the service, under ``~/introspection/``.
     """
 
@@ -234,11 +234,11 @@ class Publishers:
 
 
 class Subscribers:
-    """Several subscriptions, each as an attribute, and a service that lists them.
+    """Several subscriptions as attributes, and a service that lists them.
 
     Args:
         node: Their node.
-        subscriber_details: For each, its attribute, topic and type, whether it is latched, and
+        subscriber_details: The attribute, topic and type of each, whether it is latched, and
             its callback.
         introspection_topic_name: The name of the service, under ``~/introspection/``.
     """
@@ -273,11 +273,11 @@ class Subscribers:
 
 
 class Services:
-    """Several services, each as an attribute, and one more that lists them.
+    """Several services as attributes, and one more that lists them.
 
     Args:
         node: Their node.
-        service_details: For each, its attribute, name and type, and its callback.
+        service_details: The attribute, name and type of each, and its callback.
         introspection_topic_name: The name of the service, under ``~/introspection/``.
     """
 

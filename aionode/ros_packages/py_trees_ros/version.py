@@ -1,3 +1,3 @@
-"""The version of py_trees_ros whose sources this was compared with."""
+"""The version of py_trees_ros with whose sources this was compared."""
 
 __version__ = "2.2.2"

@@ -1,4 +1,4 @@
-"""Visitors of trees: one logs how long setting up takes, one makes messages."""
+"""Visitors of trees: one logs how long setup takes, one creates messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["SetupLogger", "TreeToMsgVisitor"]
 
 
 class SetupLogger(py_trees.visitors.VisitorBase):
-    """Logs, as debugging, how long each behaviour takes to be set up.
+    """Logs at level DEBUG how long the setup of each behaviour takes.
 
     Args:
         node: The node that logs.
@@ -25,30 +25,30 @@ class SetupLogger(py_trees.visitors.VisitorBase):
         self.node = node
 
     def initialise(self) -> None:
-        """Start to measure."""
+        """Start measuring."""
         self.start_time = self.last_time = MachineTime.steady_ns()
 
     def run(self, behaviour: Any) -> None:
-        """Log the time since the behaviour before."""
+        """Log the time since the previous behaviour."""
         now = MachineTime.steady_ns()
         took_sec = (now - self.last_time) / S_TO_NS
         self.node.get_logger().debug(f"'{behaviour.name}'.setup: {took_sec:.4f}s")
         self.last_time = now
 
     def finalise(self) -> None:
-        """Log the time of all."""
+        """Log the total time."""
         took_sec = (MachineTime.steady_ns() - self.start_time) / S_TO_NS
         self.node.get_logger().debug(f"Total tree setup time: {took_sec:.4f}s")
 
 
 class TreeToMsgVisitor(py_trees.visitors.VisitorBase):
-    """Makes a message of a tree, which is its attribute ``tree``."""
+    """Converts a tree to a message, which is its attribute ``tree``."""
 
     def __init__(self) -> None:
         super().__init__(full=True)
 
     def initialise(self) -> None:
-        """Begin a message."""
+        """Start a new message."""
         self.tree = BehaviourTree()
 
     def run(self, behaviour: Any) -> None:

@@ -1,1 +1,1 @@
-"""Programs import `ros2action.api`: what `ros2 action` is made of."""
+"""Programs import `ros2action.api`: the functions behind `ros2 action`."""

@@ -1,1 +1,1 @@
-"""Programs import this as `ros2cli`: nodes for commands, and the bases of commands."""
+"""Programs import this as `ros2cli`: nodes for commands, and base classes of commands."""

@@ -1,4 +1,4 @@
-"""What commands have in common."""
+"""Helpers of commands."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["get_ros_domain_id", "wait_for"]
 
 
 def get_ros_domain_id() -> int:
-    """Return the domain of ROS_DOMAIN_ID."""
+    """Return the domain that ROS_DOMAIN_ID sets."""
     return int(os.environ.get("ROS_DOMAIN_ID", "0"))
 
 
@@ -22,9 +22,9 @@ def wait_for(predicate: Callable[[], Any], timeout: float, period: float = 0.1) 
     """Block until a predicate is true, and return whether it is.
 
     Args:
-        predicate: What is asked.
-        timeout: For how long, in seconds; less than 0 for ever.
-        period: The time between two questions, in seconds.
+        predicate: The predicate.
+        timeout: Maximum time in seconds; negative to wait forever.
+        period: The time between two checks, in seconds.
     """
     pause = threading.Event()
     limit_ns = math.inf if timeout < 0 else MachineTime.steady_ns() + timeout * S_TO_NS

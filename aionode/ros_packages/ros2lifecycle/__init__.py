@@ -1,1 +1,1 @@
-"""Programs import `ros2lifecycle.api`: what `ros2 lifecycle` is made of."""
+"""Programs import `ros2lifecycle.api`: the functions behind `ros2 lifecycle`."""

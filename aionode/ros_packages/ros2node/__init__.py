@@ -1,1 +1,1 @@
-"""Programs import `ros2node.api`: what `ros2 node` is made of."""
+"""Programs import `ros2node.api`: the functions behind `ros2 node`."""

@@ -1,1 +1,1 @@
-"""Programs import `ros2param.api`: what `ros2 param` is made of."""
+"""Programs import `ros2param.api`: the functions behind `ros2 param`."""

@@ -1,1 +1,1 @@
-"""Programs import `ros2pkg.api`: what `ros2 pkg` is made of."""
+"""Programs import `ros2pkg.api`: the functions behind `ros2 pkg`."""

@@ -1,1 +1,1 @@
-"""Programs import `ros2run.api`: what `ros2 run` is made of."""
+"""Programs import `ros2run.api`: the functions behind `ros2 run`."""

@@ -1,1 +1,1 @@
-"""Programs import `ros2service.api`: what `ros2 service` is made of."""
+"""Programs import `ros2service.api`: the functions behind `ros2 service`."""

@@ -1,1 +1,1 @@
-"""Programs import `ros2topic.api`: what `ros2 topic` is made of."""
+"""Programs import `ros2topic.api`: the functions behind `ros2 topic`."""

@@ -1,4 +1,4 @@
-"""Servers that stand in for a robot's."""
+"""Mock servers in place of a robot's."""
 
 from py_trees_ros.mock import actions, dock
 

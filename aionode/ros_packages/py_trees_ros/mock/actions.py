@@ -1,4 +1,4 @@
-"""A server of any action, which does nothing but take its time."""
+"""A server for any action, which only waits."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ __all__ = ["GenericServer"]
 
 
 class GenericServer:
-    """A node with a server that takes a goal, waits, and succeeds; a newer goal ends an older one.
+    """A node whose action server accepts a goal, waits, and succeeds; a new goal preempts it.
 
-    The parameter ``duration`` says how long the next goal takes, in seconds.
+    The parameter ``duration`` sets how long the next goal takes, in seconds.
 
     Args:
         node_name: The name of the node.
         action_name: The name of the action.
         action_type: The class of the action.
-        generate_feedback_message: Makes its feedback.
-        generate_cancelled_result: Makes the result of a goal that is cancelled.
-        generate_preempted_result: Makes the result of a goal that a newer one ends.
-        generate_success_result: Makes the result of a goal that succeeds.
+        generate_feedback_message: Creates the feedback.
+        generate_cancelled_result: Creates the result of a cancelled goal.
+        generate_preempted_result: Creates the result of a preempted goal.
+        generate_success_result: Creates the result of a goal that succeeds.
         goal_received_callback: Called with each goal.
-        duration: The first value of the parameter; 5 seconds by default.
+        duration: The initial value of the parameter; 5 seconds by default.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class GenericServer:
         return CancelResponse.ACCEPT
 
     def execute_goal_callback(self, goal_handle: Any) -> Any:
-        """Wait until the goal's time is over, or it is cancelled or there is a newer one."""
+        """Wait until the goal's time has passed, or it is cancelled or preempted."""
         log = self.node.get_logger()
         log.info("executing a goal")
         clock = Clock()

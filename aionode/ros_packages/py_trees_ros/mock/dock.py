@@ -1,4 +1,4 @@
-"""A server that stands in for one that docks a robot."""
+"""A mock server for docking."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shows the blackboard of another process in the terminal, or lists what is on it."""
+"""Shows the blackboard of another process in the terminal, or lists its variables."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def command_line_argument_parser(formatted_for_sphinx: bool = True) -> argparse.
 
 
 def pretty_print_variables(variables: list[str]) -> None:
-    """Print names, those of fields below their variable."""
+    """Print names, with fields indented below their variable."""
     print(f"\n{console.bold}{console.cyan}Blackboard Variables:{console.reset}{console.yellow}")
     for variable in variables:
         parts = variable.split(".")
@@ -53,7 +53,7 @@ def pretty_print_variables(variables: list[str]) -> None:
 
 
 def answer_of(watcher: BlackboardWatcher, key: str, **fields: Any) -> Any:
-    """Return what a service of the other process answers."""
+    """Return the response of a service of the other process."""
     request, client = watcher.create_service_client(key)
     for name, value in fields.items():
         setattr(request, name, value)

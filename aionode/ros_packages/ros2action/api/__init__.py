@@ -1,4 +1,4 @@
-"""What `ros2 action` finds in the graph; nodes are a `DirectNode` or a `NodeStrategy`."""
+"""Graph queries of `ros2 action`; their node is a `DirectNode` or a `NodeStrategy`."""
 
 from __future__ import annotations
 

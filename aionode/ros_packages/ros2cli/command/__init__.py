@@ -1,4 +1,4 @@
-"""The base of commands."""
+"""The base class of commands."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ __all__ = ["CommandExtension"]
 
 
 class CommandExtension:
-    """A command: ``main(parser=…, args=…)`` does it."""
+    """A command, which ``main(parser=…, args=…)`` runs."""
 
     NAME: Any = None
     EXTENSION_POINT_VERSION = "0.1"
 
     def add_arguments(self, parser: Any, cli_name: str, *, argv: Any = None) -> None:
-        """Add the arguments of the command, of which a base has none."""
+        """Add the arguments of the command; the base class has none."""
 
     def main(self, *, parser: Any, args: Any) -> Any:
-        """Do it, and return the exit status."""
+        """Run the command, and return the exit status."""
         raise NotImplementedError

@@ -3,4 +3,4 @@
 __all__ = ["NODE_NAME_PREFIX"]
 
 NODE_NAME_PREFIX = "_ros2cli"
-"""How the names of such nodes begin, which hides them."""
+"""The prefix of the names of such nodes, which hides them."""

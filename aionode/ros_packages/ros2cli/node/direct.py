@@ -1,4 +1,4 @@
-"""A node for a command, with the names that its arguments have."""
+"""A node for a command, configured by its arguments."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from ros2cli.node import NODE_NAME_PREFIX
 __all__ = ["DEFAULT_TIMEOUT", "DirectNode", "add_arguments"]
 
 DEFAULT_TIMEOUT: Final = 0.5
-"""How long a node waits for what it can discover, in seconds."""
+"""How long a node waits for discovery, in seconds."""
 
 
 class DirectNode:
-    """A node that has discovered others when it is made; rclpy begins and ends with it.
+    """A node that waits for discovery when it is created; it initializes and shuts down rclpy.
 
-    It has the attributes of its node, and the queries of `rclpy.action` as methods.
+    It has the attributes of its node, and the graph queries of `rclpy.action` as methods.
 
     Args:
-        args: The parsed arguments of a command; those of `add_arguments` may be among them.
-        node_name: The node's name; by default a hidden one.
+        args: The parsed arguments of a command, which may include those of `add_arguments`.
+        node_name: The node's name; by default, a hidden one.
     """
 
     def __init__(self, args: Any, *, node_name: str | None = None) -> None:
@@ -62,7 +62,7 @@ class DirectNode:
     def get_action_client_names_and_types_by_node(
         self, remote_node_name: str, remote_node_namespace: str
     ) -> Any:
-        """Return the actions of which a node has clients, with their types."""
+        """Return the actions for which a node has clients, with their types."""
         return rclpy.action.get_action_client_names_and_types_by_node(
             self.node, remote_node_name, remote_node_namespace
         )
@@ -70,7 +70,7 @@ class DirectNode:
     def get_action_server_names_and_types_by_node(
         self, remote_node_name: str, remote_node_namespace: str
     ) -> Any:
-        """Return the actions of which a node has servers, with their types."""
+        """Return the actions for which a node has servers, with their types."""
         return rclpy.action.get_action_server_names_and_types_by_node(
             self.node, remote_node_name, remote_node_namespace
         )

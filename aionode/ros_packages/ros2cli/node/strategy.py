@@ -1,4 +1,4 @@
-"""A node for a command; in ROS one of a daemon, if there is one."""
+"""A node for a command; in ROS, that of a daemon if one runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class NodeStrategy:
 
     Args:
         args: The parsed arguments of a command.
-        node_name: The node's name; by default a hidden one.
+        node_name: The node's name; by default, a hidden one.
     """
 
     daemon_node = None

@@ -1,4 +1,4 @@
-"""The base of verbs."""
+"""The base class of verbs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["VerbExtension"]
 
 
 class VerbExtension:
-    """A verb of a command: ``main(args=…)`` does it, and ``add_arguments(parser, cli_name)``."""
+    """A verb of a command, with ``main(args=…)`` and ``add_arguments(parser, cli_name)``."""
 
     NAME: Any = None
     EXTENSION_POINT_VERSION = "0.1"

@@ -1,4 +1,4 @@
-"""What `ros2 lifecycle` asks of managed nodes."""
+"""Requests of `ros2 lifecycle` to managed nodes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def get_node_names(*, node: Any, include_hidden_nodes: bool = False) -> list[Nod
 
 
 def answers(node: Any, cls: Any, service: str, requests: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what each node answers, or the exception, however long it takes.
+    """Return the response of each node or the exception, however long it takes.
 
     Args:
         node: The node that asks.
@@ -66,7 +66,7 @@ def call_get_states(*, node: Any, node_names: list[str]) -> dict[str, Any]:
 
 
 def call_get_available_transitions(*, node: Any, states: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the transitions that each node has now, from a state if one is given."""
+    """Return the transitions now available in each node, from a state if one is given."""
     return transitions_of(node, states, "get_available_transitions")
 
 

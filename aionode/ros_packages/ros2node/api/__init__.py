@@ -1,4 +1,4 @@
-"""What `ros2 node` finds in the graph."""
+"""Graph queries of `ros2 node`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ INFO_NONUNIQUE_WARNING_TEMPLATE = (
 
 
 class NodeName(NamedTuple):
-    """The parts of a node's name, and the whole."""
+    """A node's name: its parts and the whole."""
 
     name: str
     namespace: str
@@ -50,12 +50,12 @@ class TopicInfo(NamedTuple):
 
 
 def is_hidden(name: str) -> bool:
-    """Return whether a part of a name hides it."""
+    """Return whether a part of a name makes it hidden."""
     return any(part.startswith(HIDDEN_NODE_PREFIX) for part in name.split("/"))
 
 
 def get_absolute_node_name(node_name: str | None) -> str | None:
-    """Return a name with a slash before it; None for none."""
+    """Return a name with a leading slash; None for None."""
     if not node_name:
         return None
     return node_name if node_name.startswith("/") else f"/{node_name}"
@@ -69,7 +69,7 @@ def parse_node_name(node_name: str) -> NodeName:
 
 
 def has_duplicates(values: list[Any]) -> bool:
-    """Return whether a value is there twice."""
+    """Return whether a value occurs twice."""
     return len(set(values)) < len(values)
 
 
@@ -85,7 +85,7 @@ def get_node_names(*, node: Any, include_hidden_nodes: bool = False) -> list[Nod
 def wait_for_node(
     node: Any, node_name: str, include_hidden_nodes: bool = False, timeout: float = 1.0
 ) -> bool:
-    """Wait until a node of a full name is there, and return whether it is."""
+    """Wait until a node with a full name exists, and return whether it does."""
 
     def is_there() -> bool:
         names = get_node_names(node=node, include_hidden_nodes=include_hidden_nodes)
@@ -100,12 +100,12 @@ def get_topics(
     *,
     include_hidden_topics: bool = False,
 ) -> list[TopicInfo]:
-    """Return what a query says about a node.
+    """Return the result of a query about a node.
 
     Args:
         remote_node_name: The node.
         func: The query, which takes the node's name and namespace.
-        include_hidden_topics: Whether hidden names are among the result.
+        include_hidden_topics: Whether to include hidden names.
     """
     asked = parse_node_name(remote_node_name)
     return [
@@ -167,14 +167,14 @@ class NodeNameCompleter:
     """Returns the names of nodes, for an argument of a command.
 
     Args:
-        include_hidden_nodes_key: The argument that says whether hidden ones are among them.
+        include_hidden_nodes_key: The argument that says whether to include hidden ones.
     """
 
     def __init__(self, *, include_hidden_nodes_key: str | None = None) -> None:
         self.include_hidden_nodes_key = include_hidden_nodes_key
 
     def __call__(self, prefix: str, parsed_args: Any, **kwargs: Any) -> list[str]:
-        """Return them."""
+        """Return the names."""
         key = self.include_hidden_nodes_key
         hidden = bool(key) and getattr(parsed_args, key or "")
         with NodeStrategy(parsed_args) as node:

@@ -1,4 +1,4 @@
-"""What `ros2 param` asks of nodes."""
+"""Requests of `ros2 param` to nodes."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ TYPES = {
 
 
 def client_of(node: Any, node_name: str) -> AsyncParameterClient:
-    """Return a client for the parameters of a node that is there.
+    """Return a client for the parameters of a node, waiting until the node exists.
 
     Raises:
-        RuntimeError: It is not there in time.
+        RuntimeError: It does not appear in time.
     """
     client = AsyncParameterClient(node, node_name)
     if not client.wait_for_services(timeout_sec=READY_SEC):
@@ -78,7 +78,7 @@ def answer_to(future: Any, node: Any, node_name: str) -> Any:
 
 
 def get_value(*, parameter_value: Any) -> Any:
-    """Return the value of a `ParameterValue`; None, and a line, if its type is unknown."""
+    """Return the value of a `ParameterValue`; print an error and return None if it has none."""
     try:
         return parameter_value_to_python(parameter_value)
     except RuntimeError as error:
@@ -89,10 +89,10 @@ def get_value(*, parameter_value: Any) -> Any:
 def load_parameter_file(
     *, node: Any, node_name: str, parameter_file: str, use_wildcard: bool
 ) -> None:
-    """Set the parameters of a node that a file has, and print what became of each.
+    """Set the parameters of a node from a file, and print the result for each.
 
     Raises:
-        RuntimeError: The node is not there, or does not answer.
+        RuntimeError: The node does not exist, or does not respond.
     """
     client = client_of(node, node_name)
     names = [
@@ -109,40 +109,40 @@ def load_parameter_file(
 def call_describe_parameters(
     *, node: Any, node_name: str, parameter_names: list[str] | None = None
 ) -> Any:
-    """Return the response of a node with the descriptions of parameters.
+    """Return a node's response with the descriptions of parameters.
 
     Raises:
-        RuntimeError: The node is not there, or does not answer.
+        RuntimeError: The node does not exist, or does not respond.
     """
     client = client_of(node, node_name)
     return answer_to(client.describe_parameters(parameter_names or []), node, node_name)
 
 
 def call_get_parameters(*, node: Any, node_name: str, parameter_names: list[str]) -> Any:
-    """Return the response of a node with the values of parameters.
+    """Return a node's response with the values of parameters.
 
     Raises:
-        RuntimeError: The node is not there, or does not answer.
+        RuntimeError: The node does not exist, or does not respond.
     """
     client = client_of(node, node_name)
     return answer_to(client.get_parameters(parameter_names), node, node_name)
 
 
 def call_set_parameters(*, node: Any, node_name: str, parameters: list[Any]) -> Any:
-    """Return the response of a node that was told to set parameters.
+    """Set parameters of a node, and return its response.
 
     Raises:
-        RuntimeError: The node is not there, or does not answer.
+        RuntimeError: The node does not exist, or does not respond.
     """
     client = client_of(node, node_name)
     return answer_to(client.set_parameters(parameters), node, node_name)
 
 
 def call_list_parameters(*, node: Any, node_name: str, prefixes: list[str] | None = None) -> Any:
-    """Return a future that has the response of a node with the names of its parameters.
+    """Return a completed future with a node's response that lists its parameters.
 
     Returns:
-        The future, which is done; None if the node is not there.
+        The future; None if the node does not exist.
     """
     client = AsyncParameterClient(node, node_name)
     if not client.wait_for_services(timeout_sec=READY_SEC):
@@ -162,10 +162,10 @@ def get_parameter_type_string(parameter_type: int) -> str:
 
 
 class ParameterNameCompleter:
-    """Returns the names of the parameters of the node that an argument ``node_name`` names."""
+    """Returns the parameter names of the node given by the argument ``node_name``."""
 
     def __call__(self, prefix: str, parsed_args: Any, **kwargs: Any) -> list[str]:
-        """Return them."""
+        """Return the names."""
         with DirectNode(parsed_args) as node:
             future = call_list_parameters(node=node, node_name=parsed_args.node_name)
             names = [] if future is None else future.result().result.names

@@ -1,4 +1,4 @@
-"""What `ros2 pkg` finds."""
+"""Queries of `ros2 pkg`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = [
 
 
 class PackageNotFound(Exception):  # noqa: N818  # ROS's name
-    """There is no package of this name."""
+    """There is no package with this name."""
 
     def __init__(self, package_name: str) -> None:
         super().__init__(package_name)
@@ -31,12 +31,12 @@ class PackageNotFound(Exception):  # noqa: N818  # ROS's name
 
 
 def get_package_names() -> KeysView[str]:
-    """Return the names of packages, those of the workspace included."""
+    """Return the names of packages, including those of the workspace."""
     return get_packages_with_prefixes().keys()
 
 
 def get_prefix_path(package_name: str) -> str | None:
-    """Return the folder into which a package was installed, or its source; None without one."""
+    """Return the folder where a package is installed, or its source; None if there is neither."""
     try:
         return get_package_prefix(package_name)
     except (PackageNotFoundError, ValueError):
@@ -46,7 +46,8 @@ def get_prefix_path(package_name: str) -> str | None:
 def get_executable_paths(*, package_name: str) -> list[str]:
     """Return the executable files of a package, in order.
 
-    A program that has no file, such as one of a package that is not built, has one that starts it.
+    A program without a file, such as one of a package that is not built, is represented by a script
+    that starts it.
 
     Raises:
         PackageNotFound: There is no such package.

@@ -1,4 +1,4 @@
-"""What `ros2 run` does."""
+"""The functions of `ros2 run`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ROS2RUN_MSG_PREFIX = "[ros2run]:"
 
 
 class MultipleExecutables(Exception):  # noqa: N818  # ROS's name
-    """A package has several executables of a name."""
+    """A package has several executables with the same name."""
 
     def __init__(self, paths: Iterable[str]) -> None:
         super().__init__(*paths)
@@ -30,7 +30,7 @@ class MultipleExecutables(Exception):  # noqa: N818  # ROS's name
 
 
 def get_executable_path(*, package_name: str, executable_name: str) -> str | None:
-    """Return the file of an executable of a package; None if it has none of this name.
+    """Return the file of an executable of a package; None if there is none with this name.
 
     Raises:
         PackageNotFound: There is no such package.
@@ -47,16 +47,16 @@ def get_executable_path(*, package_name: str, executable_name: str) -> str | Non
 
 
 def run_executable(*, path: str, argv: list[str], prefix: list[str] | None = None) -> int:
-    """Run a program until it ends, also after Ctrl-C, and return its exit status.
+    """Run a program until it ends, even after Ctrl-C, and return its exit status.
 
     Args:
         path: Its file.
         argv: Its arguments.
-        prefix: A command that runs it, such as ``["gdb", "--args"]``.
+        prefix: A command to run it with, such as ``["gdb", "--args"]``.
     """
     process = subprocess.Popen([*(prefix or []), path, *argv])  # noqa: S603  # the caller's
     while process.returncode is None:
-        with suppress(KeyboardInterrupt):  # the program has the signal as well
+        with suppress(KeyboardInterrupt):  # the program receives the signal as well
             process.wait()
     status = process.returncode
     if -status in signal.valid_signals():
@@ -77,7 +77,7 @@ class ExecutableNameCompleter:
         self.package_name_key = package_name_key
 
     def __call__(self, prefix: str, parsed_args: Any, **kwargs: Any) -> list[str]:
-        """Return them."""
+        """Return the names."""
         package = getattr(parsed_args, self.package_name_key or "")
         try:
             return [Path(path).name for path in get_executable_paths(package_name=package)]

@@ -1,4 +1,4 @@
-"""What `ros2 service` finds in the graph."""
+"""Graph queries of `ros2 service`."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ def get_service_names(*, node: Any, include_hidden_services: bool = False) -> li
 
 
 def get_service_class(node: Any, service_name: str, include_hidden_services: bool) -> Any:
-    """Return the class of a service that is in the graph.
+    """Return the class of a service in the graph.
 
     Raises:
-        RuntimeError: It is not, it has several types, or its type is unknown.
+        RuntimeError: There is no such service, it has several types, or its type is unknown.
     """
     found = dict(
         get_service_names_and_types(node=node, include_hidden_services=include_hidden_services)
@@ -67,14 +67,14 @@ class ServiceNameCompleter:
     """Returns the names of services, for an argument of a command.
 
     Args:
-        include_hidden_services_key: The argument that says whether hidden ones are among them.
+        include_hidden_services_key: The argument that says whether to include hidden ones.
     """
 
     def __init__(self, *, include_hidden_services_key: str | None = None) -> None:
         self.include_hidden_services_key = include_hidden_services_key
 
     def __call__(self, prefix: str, parsed_args: Any, **kwargs: Any) -> list[str]:
-        """Return them."""
+        """Return the names."""
         hidden = getattr(parsed_args, self.include_hidden_services_key or "", False)
         with NodeStrategy(parsed_args) as node:
             return get_service_names(node=node, include_hidden_services=hidden)

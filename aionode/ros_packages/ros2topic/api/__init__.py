@@ -1,4 +1,4 @@
-"""What `ros2 topic` finds in the graph, and the profiles that its options name."""
+"""Graph queries of `ros2 topic`, and the QoS profiles that its options select."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ PERIOD_SEC = 0.1
 
 
 def positive_int(string: str) -> int:
-    """Return the positive integer that an argument is.
+    """Return an argument as a positive integer.
 
     Raises:
-        ArgumentTypeError: It is none.
+        ArgumentTypeError: It is not one.
     """
     try:
         value = int(string)
@@ -57,10 +57,10 @@ def positive_int(string: str) -> int:
 
 
 def positive_float(inval: str) -> float:
-    """Return the positive number that an argument is.
+    """Return an argument as a positive number.
 
     Raises:
-        ArgumentTypeError: It is none.
+        ArgumentTypeError: It is not one.
     """
     try:
         value = float(inval)
@@ -91,19 +91,19 @@ def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[s
 def get_msg_class(
     node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False
 ) -> Any:
-    """Return the class of a topic's messages, with a warning if nobody has the topic.
+    """Return the class of a topic's messages, with a warning if the topic does not exist.
 
     Args:
-        node: The node that looks.
+        node: The node that searches.
         topic: The topic, relative to the node.
         blocking: Whether to wait for the topic.
         include_hidden_topics: Whether the topic may be hidden.
 
     Returns:
-        The class; None if nobody has the topic.
+        The class; None if the topic does not exist.
 
     Raises:
-        RuntimeError: The name is not valid, the topic has several types, or its type is unknown.
+        RuntimeError: The name is invalid, the topic has several types, or its type is unknown.
     """
     found = class_of(node, topic, include_hidden_topics)
     if found is None:
@@ -116,7 +116,7 @@ def get_msg_class(
 
 
 def class_of(node: Any, topic: str, include_hidden_topics: bool) -> Any:
-    """Return the class of a topic's messages; None if nobody has the topic."""
+    """Return the class of a topic's messages; None if the topic does not exist."""
     try:
         name = expand_topic_name(topic, node.get_name(), node.get_namespace())
         validate_full_topic_name(name)
@@ -146,14 +146,14 @@ class TopicNameCompleter:
     """Returns the names of topics, for an argument of a command.
 
     Args:
-        include_hidden_topics_key: The argument that says whether hidden ones are among them.
+        include_hidden_topics_key: The argument that says whether to include hidden ones.
     """
 
     def __init__(self, *, include_hidden_topics_key: str | None = None) -> None:
         self.include_hidden_topics_key = include_hidden_topics_key
 
     def __call__(self, prefix: str, parsed_args: Any, **kwargs: Any) -> list[str]:
-        """Return them."""
+        """Return the names."""
         hidden = getattr(parsed_args, self.include_hidden_topics_key or "", False)
         with NodeStrategy(parsed_args) as node:
             return get_topic_names(node=node, include_hidden_topics=hidden)
@@ -168,7 +168,7 @@ def profile_configure_short_keys(
     liveliness: str | None = None,
     liveliness_lease_duration_s: float | None = None,
 ) -> None:
-    """Change the policies of a profile that are given, by their short names."""
+    """Set the given policies of a profile, by their short names."""
     for name, policy, value in (
         ("history", HistoryPolicy, history),
         ("durability", DurabilityPolicy, durability),
@@ -194,12 +194,12 @@ def qos_profile_from_short_keys(
     liveliness: str | None = None,
     liveliness_lease_duration_s: float | None = None,
 ) -> QoSProfile:
-    """Return the profile of a name, with the policies that are given."""
+    """Return a preset profile with the given policies."""
     profile: Any = copy.copy(QoSPresetProfiles.get_from_short_key(preset_profile))
     profile_configure_short_keys(
         profile, reliability, durability, depth, history, liveliness, liveliness_lease_duration_s
     )
-    return profile  # type: ignore[no-any-return]  # the presets are members of an enumeration
+    return profile  # type: ignore[no-any-return]  # the presets are enum members
 
 
 def add_qos_arguments(
@@ -209,7 +209,7 @@ def add_qos_arguments(
 
     Args:
         parser: Their parser.
-        subscribe_or_publish: What the profile is for, as a verb.
+        subscribe_or_publish: What the profile is for: a verb.
         default_profile_str: The preset that is the default.
     """
     parser.add_argument(
