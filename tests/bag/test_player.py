@@ -115,7 +115,7 @@ async def test_a_paused_player_publishes_one_by_one(tmp_path: Path) -> None:
             assert await playing
 
 
-async def test_a_player_seeks_and_goes_on_there(tmp_path: Path) -> None:
+async def test_a_player_seeks_and_continues_there(tmp_path: Path) -> None:
     """Also backward, and not beyond the recording."""
     record(tmp_path / "run", "a", "b", "c")
     clock = ManualClock()
@@ -288,7 +288,7 @@ async def test_requests_are_sent_as_by_their_client(tmp_path: Path) -> None:
         assert len(events) == 2, "those of the server itself"
 
 
-async def test_a_request_that_nobody_serves_is_named(
+async def test_a_request_without_a_server_is_named(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """It is not kept for a server that appears later, when its time has passed."""
@@ -326,7 +326,7 @@ async def test_messages_are_played_in_the_order_in_which_they_were_sent(tmp_path
         assert player.played == 3
 
 
-async def test_the_next_file_is_told(tmp_path: Path) -> None:
+async def test_the_next_file_is_announced(tmp_path: Path) -> None:
     """On rosbag2's topic, also after seeking."""
     with bag.BagWriter(tmp_path / "run", max_messages=1) as out:
         for second in (1, 2, 3):

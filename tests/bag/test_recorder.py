@@ -323,7 +323,7 @@ async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
         assert first.message.request[0].a == 2
 
 
-async def test_an_error_of_the_block_is_raised_as_it_is(tmp_path: Path) -> None:
+async def test_an_error_of_the_block_is_raised_unchanged(tmp_path: Path) -> None:
     """A program catches its own errors, not groups of them."""
     async with local_context() as context:
         with pytest.raises(KeyError, match="mine"):

@@ -132,7 +132,7 @@ def test_what_was_recorded_and_is_gone_stays_known(what: str, tmp_path: Path) ->
         assert copied.missing == {"/numbers": lacks, "/words": lacks}
 
 
-def test_a_whole_bag_is_left_as_it_is(tmp_path: Path) -> None:
+def test_an_intact_bag_is_left_unchanged(tmp_path: Path) -> None:
     """Checking an intact bag changes nothing."""
     record(tmp_path / "run")
     before = {file: file.read_bytes() for file in (tmp_path / "run").iterdir()}

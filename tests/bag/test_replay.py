@@ -226,7 +226,7 @@ async def test_a_failing_callback_ends_the_run_with_its_error(numbers: Path) -> 
     assert caught.value.subgroup(ZeroDivisionError) is not None
 
 
-async def test_an_error_of_the_test_comes_out_as_it_is(numbers: Path) -> None:
+async def test_an_error_of_the_test_propagates_unchanged(numbers: Path) -> None:
     """An assertion in the block is reported like any other."""
     with pytest.raises(AssertionError, match="as it is"):  # noqa: PT012  # as above
         async with bag.replay(numbers) as run:

@@ -109,7 +109,7 @@ async def test_a_viewer_with_all_places_leaves_one_to_another_identity(way: Way)
             await first.ping()
 
 
-async def test_who_has_to_leave_is_told_why() -> None:
+async def test_a_client_that_has_to_leave_is_told_why() -> None:
     """The newest client leaves: long-running ones continue."""
     async with (
         serving(Policy.parse(POLICY)) as gateway,
@@ -133,7 +133,7 @@ async def test_who_has_to_leave_is_told_why() -> None:
             await (await client.ping())
 
 
-async def test_who_keeps_unread_what_is_public_keeps_nobody_out() -> None:
+async def test_a_client_that_leaves_public_data_unread_keeps_nobody_out() -> None:
     """A stranger needs no token for the page, so it could open any number of connections."""
     async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:
         request = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 2000

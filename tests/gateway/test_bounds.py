@@ -177,7 +177,7 @@ async def test_an_op_that_is_refused_looks_for_no_type(
     assert "the policy does not allow tester" in (await client.receive())["msg"]
 
 
-async def test_endpoints_that_nobody_uses_are_bounded(bench: Bench) -> None:
+async def test_unused_endpoints_are_bounded(bench: Bench) -> None:
     """A client uses one name after another: each of its publishers stays for a while."""
     shared = Shared(bench.robot.time_base)
     made = []

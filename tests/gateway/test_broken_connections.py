@@ -339,7 +339,7 @@ async def test_an_idle_connection_is_closed_after_its_answer() -> None:
         writer.close()
 
 
-async def test_five_hundred_connections_that_say_nothing_keep_nobody_out() -> None:
+async def test_five_hundred_silent_connections_keep_nobody_out() -> None:
     """Their number is limited, and a connection that sends a request replaces the oldest one."""
     limits = "clients = 4\nhandshake_sec = 30.0"
     async with (
@@ -486,7 +486,7 @@ async def test_parts_without_bytes_do_not_pile_up() -> None:
         writer.close()
 
 
-async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
+async def test_garbage_that_continues_after_the_goodbye_is_hardly_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The gateway waits some seconds for the client's close frame, which may follow later."""

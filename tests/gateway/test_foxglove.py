@@ -575,7 +575,7 @@ async def test_a_recording_that_has_ended_is_played_again(tmp_path: Path, contex
         assert [(await heard.get()).data, (await heard.get()).data] == ["1", "2"]
 
 
-async def test_a_client_is_told_of_simulated_time(context: Context) -> None:
+async def test_a_client_is_informed_of_simulated_time(context: Context) -> None:
     """If the gateway uses it; messages have simulated times as well."""
     async with Node(
         "gateway", context=context, parameter_overrides=[Parameter("use_sim_time", value=True)]

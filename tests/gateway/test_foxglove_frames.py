@@ -116,7 +116,7 @@ def test_an_op_of_the_server_has_its_name_in_front() -> None:
     ],
     ids=lambda value: None,
 )
-def test_a_parameter_comes_back_as_it_was(parameter: Parameter, shown: dict[str, object]) -> None:
+def test_a_parameter_is_restored_unchanged(parameter: Parameter, shown: dict[str, object]) -> None:
     """The hints tell floats from integers, and bytes from texts."""
     assert frames.shown_parameter("/n.p", parameter) == {"name": "/n.p", **shown}
     given_back = parameter_of("p", shown.get("value"), NOT_SET, shown.get("type"))  # type: ignore[arg-type]

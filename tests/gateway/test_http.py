@@ -94,7 +94,7 @@ async def test_the_graph_is_listed_as_the_command_line_prints_it(
         ("/nonsense", "not_found"),
     ],
 )
-async def test_a_name_that_does_not_exist_is_told_with_a_code(
+async def test_a_name_that_does_not_exist_is_reported_with_a_code(
     client: httpx.AsyncClient, path: str, code: str
 ) -> None:
     """A program reads the code, and a person the text."""
@@ -696,7 +696,7 @@ async def test_parameters_are_read_and_set(client: httpx.AsyncClient, robot: Nod
     assert list(robot.get_parameter("gains").value) == [1.0, 2.0]
 
 
-async def test_a_parameter_that_the_node_rejects_is_told_with_its_reason(
+async def test_a_parameter_that_the_node_rejects_is_reported_with_its_reason(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
     """The node has the last word."""
@@ -770,7 +770,7 @@ async def test_metrics_count_what_the_endpoints_count(
     assert 'aionode_node_running{node="/robot"} 1' in text.splitlines()
 
 
-async def test_the_health_is_told_to_everyone(aionode_context: Context) -> None:
+async def test_the_health_is_visible_to_everyone(aionode_context: Context) -> None:
     """A process monitor has no token, and the answer reveals nothing else."""
     policy = """
         [[who]]

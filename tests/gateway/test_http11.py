@@ -94,7 +94,7 @@ async def test_the_head_of_an_answer_is_sent_without_its_body() -> None:
     assert bodies(answer) == [b""]
 
 
-async def test_a_client_that_waits_for_leave_is_told_to_go_on() -> None:
+async def test_a_client_that_waits_for_permission_is_told_to_continue() -> None:
     """Curl waits for it before it sends a large body."""
     head = b"POST /x HTTP/1.1\r\n" + HOST + b"Content-Length: 4\r\nExpect: 100-continue\r\n\r\n"
     async with served() as port:

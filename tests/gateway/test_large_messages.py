@@ -177,7 +177,7 @@ async def test_a_large_message_is_written_once_for_all_clients(
         assert {op["op"] for op in ops} == {"png" if compression == "png" else "publish"}
 
 
-async def test_a_client_that_leaves_takes_what_waits_with_it(robot: Robot, node: Node) -> None:
+async def test_what_waits_for_a_client_is_dropped_when_it_leaves(robot: Robot, node: Node) -> None:
     """Nothing is encoded that nobody receives."""
     publisher = node.create_publisher(Image, "/image", 10)
     async with rosbridge_client(robot) as client:

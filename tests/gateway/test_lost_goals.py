@@ -90,7 +90,7 @@ async def test_a_server_of_aionode_ends_the_goal_of_a_lost_client(
     ],
     ids=["a server as in rclpy", "a callback that rejects", "a callback that fails"],
 )
-async def test_a_goal_that_goes_on_is_said(
+async def test_a_goal_that_continues_is_reported(
     bench: Bench, options: dict[str, Any], caplog: pytest.LogCaptureFixture
 ) -> None:
     """Something moves that nobody watches: the operator of the robot has to learn of it."""
@@ -105,7 +105,7 @@ async def test_a_goal_that_goes_on_is_said(
     assert "/arm: operator has left, and cancel was rejected: the goal goes on" in caplog.text
 
 
-async def test_a_client_that_is_there_is_told_that_its_cancel_was_rejected(bench: Bench) -> None:
+async def test_a_connected_client_is_told_that_its_cancel_was_rejected(bench: Bench) -> None:
     """The client decides then; a server without a callback accepts no cancel request."""
     arm = Arm(bench)
     await settle()

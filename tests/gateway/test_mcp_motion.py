@@ -151,7 +151,7 @@ async def test_a_goal_ends_at_the_ceiling(assisted: Bench, era: str) -> None:
     assert assisted.base.goals == ["begun", "cancelled"]
 
 
-async def test_a_goal_tells_how_far_it_is(assisted: Bench, era: str) -> None:
+async def test_a_goal_reports_its_progress(assisted: Bench, era: str) -> None:
     """By its feedback; finally it returns its result."""
     client = await assisted.connect(era)
     heard: list[str] = []

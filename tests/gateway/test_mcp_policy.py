@@ -256,7 +256,7 @@ async def test_an_assistant_is_who_it_is_started_as(node: Any) -> None:
         Assistant(node, strangers).identity()
 
 
-async def test_a_name_that_the_policy_knows_no_more_is_refused(era: str) -> None:
+async def test_a_name_removed_from_the_policy_is_refused(era: str) -> None:
     """A policy may change while the program is connected."""
     async with bench_of(POLICY, name="model") as bench:
         client = await bench.connect(era)

@@ -115,7 +115,7 @@ async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None
     assert [each["value"]["data"] for each in reading.result()["messages"]] == ["one", "two"]
 
 
-async def test_why_tells_what_led_to_a_message(monkeypatch: pytest.MonkeyPatch, era: str) -> None:
+async def test_why_shows_what_led_to_a_message(monkeypatch: pytest.MonkeyPatch, era: str) -> None:
     """From callback to callback; topics that the policy hides are left out."""
     monkeypatch.setenv("AIONODE_CAUSES", "1")
     who = '[[who]]\nname = "a"\nloopback = true\n'

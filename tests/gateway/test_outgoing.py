@@ -113,7 +113,7 @@ async def test_a_large_frame_leaves_in_slices_while_the_loop_turns(connection: C
     assert connection.sent == whole(LARGE)
 
 
-async def test_no_more_leaves_than_the_client_reads(connection: Connection) -> None:
+async def test_no_more_is_sent_than_the_client_reads(connection: Connection) -> None:
     """Otherwise the transport would have to buffer all of it."""
     connection.outgoing.pause()
     connection.outgoing.send(Framing().parts(LARGE))

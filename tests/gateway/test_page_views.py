@@ -197,7 +197,7 @@ async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
         assert "/wrong: 7 \u00d7 2 cells of 0.5 m with 6 values are no map" in caption
 
 
-async def test_what_nobody_looks_at_is_not_subscribed(node: Node) -> None:
+async def test_what_nobody_looks_at_is_not_subscribed_to(node: Node) -> None:
     """A robot publishes many transforms and large clouds; the topic list measures neither."""
     publisher = node.create_publisher(PointCloud2, "/points", 1)
     async with page_of(node) as page:
@@ -264,7 +264,7 @@ async def test_a_click_sends_the_goal_of_an_action(node: Node) -> None:
         assert ended == ["cancelled"]
 
 
-async def test_a_goal_that_the_policy_refuses_is_told(node: Node) -> None:
+async def test_a_goal_that_the_policy_refuses_is_reported(node: Node) -> None:
     """The page only requests it; the gateway decides."""
     got: list[PoseStamped] = []
     node.create_subscription(PoseStamped, "/goal_pose", got.append, 10)

@@ -41,7 +41,7 @@ async def camera(bench: Bench) -> AsyncIterator[Node]:
 
 
 @pytest.mark.parametrize("part", ["get_parameters", "get_parameter_types", "describe_parameters"])
-async def test_a_service_tells_nothing_of_a_parameter_that_is_hidden(
+async def test_a_service_reveals_nothing_of_a_hidden_parameter(
     bench: Bench, camera: Node, part: str
 ) -> None:
     """Reading by a call counts as reading."""
@@ -97,7 +97,7 @@ async def test_events_leave_out_parameters_that_are_hidden(bench: Bench, camera:
     assert got == [{"exposure": 0.25}, {"exposure": 0.75}]
 
 
-async def test_an_event_that_is_none_is_left_out(bench: Bench, camera: Node) -> None:
+async def test_an_invalid_event_is_left_out(bench: Bench, camera: Node) -> None:
     """Any node may publish arbitrary bytes there, and clients only get events that were checked."""
     got: list[object] = []
     async with bench.session() as session:

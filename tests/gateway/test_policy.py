@@ -275,7 +275,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 # Identities of clients
 
 
-def test_a_token_tells_a_client_from_others(policy: Policy) -> None:
+def test_a_token_identifies_a_client(policy: Policy) -> None:
     """From anywhere, even if other entries match without it."""
     for address in ("127.0.0.1", "192.168.0.7"):
         shown = credentials(token=SECRET, address=address, host="192.168.0.1:9090")
@@ -310,7 +310,7 @@ def test_another_machine_needs_a_secret(policy: Policy) -> None:
     assert by_origin.identify(credentials(origin="https://a.example")).name == "page"
 
 
-def test_a_certificate_tells_a_client_from_others() -> None:
+def test_a_certificate_identifies_a_client() -> None:
     """By its common name, which the server has verified."""
     policy = Policy.parse("[[who]]\nname = 'laptop'\ncertificate = 'laptop-1'")
 
@@ -354,7 +354,7 @@ def test_pages_of_other_origins_may_not_connect(
             policy.identify(credentials(**shown))
 
 
-def test_without_a_file_this_host_reads_and_nobody_writes() -> None:
+def test_without_a_policy_file_this_host_may_read_and_nobody_may_write() -> None:
     """The gateway is safe before anybody has configured it."""
     policy = Policy.default()
     local = policy.identify(credentials())

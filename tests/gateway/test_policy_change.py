@@ -50,7 +50,7 @@ async def test_a_client_of_rosbridge_is_told_which_topic_ends(
     assert "the policy does not allow" in (await client.receive())["msg"]
 
 
-async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: Bench) -> None:
+async def test_a_foxglove_client_is_told_what_ends_and_what_is_hidden(bench: Bench) -> None:
     """Channels, subscriptions, parameter changes, and the nodes of the connection graph."""
     bench.node.create_publisher(String, "/words", 1)
     bench.node.create_publisher(String, "/secret", 1)

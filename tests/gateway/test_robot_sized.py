@@ -158,7 +158,7 @@ def test_limits_are_given_as_text() -> None:
 
 
 @pytest.mark.parametrize("text", ["frame_bytes", "speed=1", "clients=many", "clients=0", "=1"])
-def test_a_limit_that_is_none_is_refused(text: str) -> None:
+def test_an_invalid_limit_is_refused(text: str) -> None:
     """The error lists the limits."""
     with pytest.raises(ValueError, match=r"one of clients, frame_bytes|not a valid|above 0"):
         Limits().with_given([text])

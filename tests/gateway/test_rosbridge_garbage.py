@@ -70,7 +70,7 @@ def op_of_chance(chance: random.Random) -> str:
 
 
 @pytest.mark.parametrize("seed", range(4))
-async def test_ops_of_chance_harm_nobody(robot: Robot, client: RosbridgeClient, seed: int) -> None:
+async def test_random_ops_harm_nobody(robot: Robot, client: RosbridgeClient, seed: int) -> None:
     """Not even its sender: every failure is answered."""
     chance = random.Random(seed)  # noqa: S311  # no secret
     async with rosbridge_client(robot) as wild:

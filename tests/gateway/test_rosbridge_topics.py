@@ -260,7 +260,7 @@ async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
         ({"topic": "/t", "type": "std_msgs/String", "msg": None}, "publish.msg: None (NoneType)"),
     ],
 )
-async def test_a_mistake_is_told(
+async def test_a_mistake_is_reported(
     client: RosbridgeClient, fields: dict[str, object], told: str
 ) -> None:
     """Rosbridge only writes it to its own log, where the author of a page never looks."""

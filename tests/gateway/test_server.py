@@ -152,7 +152,7 @@ async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
     assert log.stat().st_mode & 0o777 == 0o600
 
 
-async def test_an_error_of_the_program_comes_out_as_it_is() -> None:
+async def test_an_error_of_the_program_propagates_unchanged() -> None:
     """Not in a group, so that `except` finds it."""
     with pytest.raises(LookupError, match="of the program"):
         async with serving():
@@ -230,7 +230,7 @@ async def status_of(
 
 
 @pytest.mark.parametrize("first", range(len(TRIES)))
-async def test_tokens_are_tried_so_often_and_no_more(
+async def test_attempts_with_tokens_are_limited(
     first: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever the protocol: not even the right one counts then, or its answer would reveal it."""
@@ -295,7 +295,7 @@ async def test_what_is_too_large_is_refused() -> None:
         await until(lambda: not gateway.stats.sessions)
 
 
-async def test_there_are_so_many_clients_and_no_more() -> None:
+async def test_the_number_of_clients_is_limited() -> None:
     """The next one is refused, and may connect when one has left."""
     async with serving(Policy.parse(f"{POLICY}\n[limits]\nclients = 2")) as gateway:
         async with raw_connect(gateway, "/", {}, []), raw_connect(gateway, "/", {}, []):
@@ -379,7 +379,7 @@ async def test_a_port_that_is_taken_is_an_error() -> None:
             await second.__aenter__()
 
 
-async def test_the_process_is_left_as_it_was() -> None:
+async def test_the_process_is_left_unchanged() -> None:
     """Signal handlers and loggers belong to the program, which may run its own server."""
 
     def state() -> object:
@@ -476,7 +476,7 @@ async def context() -> AsyncIterator[Context]:
         yield made
 
 
-async def test_a_client_that_reads_nothing_slows_nobody() -> None:
+async def test_a_client_that_reads_nothing_slows_nobody_down() -> None:
     """The others get every message; the messages it lacks are counted, and not kept."""
     async with serving() as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
@@ -523,7 +523,7 @@ async def test_a_client_whose_frames_are_refused_is_read_slowly(bench: Bench) ->
         serving.cancel()
 
 
-async def test_a_policy_that_lets_nobody_in_is_in_the_log(
+async def test_a_policy_that_lets_nobody_in_is_logged(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """A file with only rules replaces the rules that apply without a file."""

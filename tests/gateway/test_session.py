@@ -400,7 +400,7 @@ async def test_a_publisher_that_comes_later_is_heard(bench: Bench, offered: QoSP
         assert waiting(session) == ["x", "y"]
 
 
-async def test_a_subscription_is_as_strong_as_the_publishers_that_there_are(bench: Bench) -> None:
+async def test_a_subscription_matches_the_qos_of_existing_publishers(bench: Bench) -> None:
     """Without one it requests nothing; later it misses no message that a publisher repeats."""
 
     async def wanted() -> tuple[ReliabilityPolicy, DurabilityPolicy]:

@@ -122,9 +122,7 @@ async def test_a_certificate_tells_who_a_client_is(
         assert names == ["driver", "holder", "local"]
 
 
-async def test_a_certificate_that_nobody_has_signed_cannot_connect(
-    folder: Path, trust: Trust
-) -> None:
+async def test_an_unsigned_certificate_cannot_connect(folder: Path, trust: Trust) -> None:
     """Even if its name is right, and the policy knows this machine."""
     async with serving(policy(folder, LOCAL)) as gateway:
         stranger = trust("stranger")
@@ -148,7 +146,9 @@ async def test_without_a_certificate_it_is_what_the_policy_says(folder: Path, tr
                     pass
 
 
-async def test_a_name_that_the_policy_does_not_know_is_nobody(folder: Path, trust: Trust) -> None:
+async def test_a_name_that_the_policy_does_not_know_identifies_nobody(
+    folder: Path, trust: Trust
+) -> None:
     """The authority may sign certificates of others as well."""
     other = trust("clients", "other.example")
     async with serving(policy(folder)) as gateway:

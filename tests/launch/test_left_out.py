@@ -148,7 +148,9 @@ def test_only_the_windows_of_a_package_are_left_out(files: Files) -> None:
         planned(files, text)
 
 
-def test_a_window_that_is_there_is_started(files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_window_that_is_installed_is_started(
+    files: Files, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Such as those of a ROS 2 that is sourced."""
     program = Path(files.write("bin/plotjuggler", "#!/bin/sh\n"))
     program.chmod(0o755)

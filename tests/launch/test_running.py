@@ -295,7 +295,7 @@ async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: 
     ]
 
 
-async def test_a_launch_goes_on_while_its_only_process_is_restarted(robot: Robot) -> None:
+async def test_a_launch_continues_while_its_only_process_is_restarted(robot: Robot) -> None:
     """On request; the event handlers are called for both runs."""
     plan = robot.plan(
         """

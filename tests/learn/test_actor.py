@@ -191,7 +191,7 @@ async def test_a_policy_slower_than_its_chunk_is_an_error_and_nothing_moves(robo
     assert [value for _, value in robot.got] == [0.0]  # the stop of the lease
 
 
-async def test_a_first_answer_that_takes_long_is_forgiven(robot: Robot) -> None:
+async def test_a_slow_first_answer_is_tolerated(robot: Robot) -> None:
     """It loads the weights, or compiles."""
     latencies = [5.0]
 
@@ -261,7 +261,7 @@ async def test_a_policy_that_fails_stops_the_robot_at_once(robot: Robot) -> None
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
-async def test_a_number_that_is_none_stops_the_robot(robot: Robot, bad: float) -> None:
+async def test_a_value_that_is_not_a_number_stops_the_robot(robot: Robot, bad: float) -> None:
     """NaN is no command, and no limit catches it."""
     _, ended = await driven(robot, lambda _: [[1.0], [bad]], 1.0)
 
@@ -467,7 +467,7 @@ async def test_a_number_that_its_field_cannot_hold_ends_the_block(robot: Robot) 
         await sent(robot, contract, 1.0, 300.0)
 
 
-async def test_a_number_that_its_field_cannot_hold_is_told_at_once(robot: Robot) -> None:
+async def test_a_number_that_its_field_cannot_hold_is_reported_at_once(robot: Robot) -> None:
     """By the call that has it, rather than by the next one."""
     contract = contract_of(type="std_msgs/msg/Int8", topic="/gear", fields=["data"], upper=1e9)
     async with contract.act(robot.node) as actor:

@@ -173,7 +173,9 @@ def test_what_a_picture_and_a_joint_show_agrees_within_the_age_that_is_told(
 
 @pytest.mark.parametrize("rows", [0, 1, 4, 12])
 @pytest.mark.parametrize("is_speed", [False, True])
-def test_how_long_an_observation_follows_its_command_is_told(rows: int, is_speed: bool) -> None:
+def test_the_delay_of_an_observation_after_its_command_is_reported(
+    rows: int, is_speed: bool
+) -> None:
     """A robot that answers late: of the position that was commanded, or of the speed."""
     noise = np.random.default_rng(0).normal(size=400)
     commanded = np.convolve(noise, np.ones(8) / 8, "same")
@@ -185,7 +187,7 @@ def test_how_long_an_observation_follows_its_command_is_told(rows: int, is_speed
     assert found == pytest.approx(rows / 30, abs=0.5 / 30)
 
 
-def test_no_lag_is_told_of_what_does_not_follow() -> None:
+def test_no_lag_is_reported_for_what_does_not_follow() -> None:
     """A guess would be taken for a measurement."""
     first, second = np.random.default_rng(0).normal(size=(2, 300))
     assert lag_of(first, second, 30) is None

@@ -170,7 +170,7 @@ def test_a_topic_that_is_too_old_for_all_rows_is_named(tmp_path: Path) -> None:
         dataset(tmp_path, bag)
 
 
-def test_what_a_repair_could_not_save_is_told(tmp_path: Path) -> None:
+def test_what_a_repair_could_not_save_is_reported(tmp_path: Path) -> None:
     """Without metadata nothing else says that messages are missing."""
     path = demonstration(tmp_path / "run", length_sec=6)
     (file,) = path.glob("*.mcap")
@@ -234,7 +234,7 @@ def test_topics_that_arrive_late_are_aligned_by_their_stamps(tmp_path: Path) -> 
         assert abs(shown(row[CAMERA]) - column(at)) <= 1
 
 
-def test_a_slow_camera_is_told(tmp_path: Path) -> None:
+def test_a_slow_camera_is_reported(tmp_path: Path) -> None:
     """Its pictures would be played too fast."""
     bag = demonstration(tmp_path / "run", cameras=[Timing(24)])
     result = export(tmp_path / "out", [bag], contract=contract(), jobs=1)
@@ -301,7 +301,7 @@ def test_av1_is_an_option(tmp_path: Path) -> None:
     assert abs(shown(read[20][CAMERA]) - column(read[20]["observation.state"][0])) <= 1
 
 
-def test_an_export_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
+def test_an_export_resumes_where_it_was_interrupted(tmp_path: Path) -> None:
     """Hours of encoding are not done again."""
     bags = [demonstration(tmp_path / f"run{number}", length_sec=0.5) for number in range(2)]
 
@@ -399,7 +399,7 @@ def test_the_tasks_are_an_index_of_any_name(tmp_path: Path, index: str | None, f
 
 
 @pytest.mark.parametrize("place", ["10", "45", "70", "write_dataset", "check_dataset"])
-def test_an_export_that_was_killed_goes_on(tmp_path: Path, place: str) -> None:
+def test_a_killed_export_resumes(tmp_path: Path, place: str) -> None:
     """Wherever it was, also with another codec and other bags than before: they leave nothing."""
     bags = [
         demonstration(tmp_path / f"run{number}", length_sec=0.5, seed=number) for number in range(3)

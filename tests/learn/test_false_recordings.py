@@ -279,7 +279,7 @@ def test_a_topic_without_times_is_of_its_arrivals_and_told(tmp_path: Path) -> No
     assert exported(tmp_path / "told", edit, contract=made).problems == {}
 
 
-def test_a_clock_that_is_ahead_is_told(tmp_path: Path) -> None:
+def test_a_clock_that_is_ahead_is_reported(tmp_path: Path) -> None:
     """Its pictures would show what the joints do later."""
     edit = false("/joint_states", lambda each: shifted(each, 0.3), ALL)
     run = demonstration(tmp_path / "run", edit=edit, length_sec=1)

@@ -223,7 +223,7 @@ def full_disk(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     return lambda: monkeypatch.setattr("os.fdatasync", is_full)
 
 
-async def test_a_full_disk_is_told_while_the_episode_is_recorded(
+async def test_a_full_disk_is_reported_while_the_episode_is_recorded(
     tmp_path: Path, full_disk: Callable[[], None]
 ) -> None:
     """Whoever demonstrates would go on in vain. What was written before is there."""
@@ -283,7 +283,7 @@ async def test_an_episode_without_a_task_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("given", ["file", "file/runs"])
-async def test_a_folder_that_cannot_be_is_told_before_anything_is_recorded(
+async def test_an_unusable_folder_is_reported_before_anything_is_recorded(
     tmp_path: Path, given: str
 ) -> None:
     """Whoever demonstrates has prepared the robot, and would notice it at the first key."""
@@ -366,7 +366,7 @@ async def checked(
         return checking.result()
 
 
-async def test_a_check_tells_rate_age_and_qos_of_each_topic() -> None:
+async def test_a_check_reports_rate_age_and_qos_of_each_topic() -> None:
     """Before anything is recorded."""
     found = await checked(stamped())
     assert found.problems == []

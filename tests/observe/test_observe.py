@@ -99,7 +99,7 @@ async def test_two_snapshots_give_rates() -> None:
     assert heard.durations["run_time"].count == 10
 
 
-async def test_who_does_not_answer_is_named_and_the_others_are_there() -> None:
+async def test_contexts_that_do_not_answer_are_named_and_the_others_are_included() -> None:
     """A process that is frozen, dead, older, or of another form; ROS 2 keeps no reports."""
     told = encoded((context := local_context()).report())
     answers = {"a1": None, "b2": b"", "c3": b"\xff", "d4": told, "e5": None}
@@ -121,7 +121,7 @@ async def test_who_does_not_answer_is_named_and_the_others_are_there() -> None:
 
 
 @given(st.binary(max_size=300))
-def test_a_report_that_is_none_is_refused(data: bytes) -> None:
+def test_an_invalid_report_is_refused(data: bytes) -> None:
     """What other processes send is not trusted."""
     report = decoded(data)
 

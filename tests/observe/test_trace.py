@@ -144,7 +144,7 @@ async def test_a_context_without_nodes_is_not_named_silent() -> None:
     assert trace.silent == {"a1": ["/frozen"]}
 
 
-async def test_the_command_writes_a_file_and_names_who_takes_no_part(
+async def test_the_command_writes_a_file_and_names_processes_left_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With the remedy; the exit status is 1 where nobody does."""

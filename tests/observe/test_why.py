@@ -479,7 +479,7 @@ async def test_who_keeps_no_causes_is_named_with_the_remedy() -> None:
     ]
 
 
-async def test_a_publisher_that_has_sent_nothing_is_told_of_as_such() -> None:
+async def test_a_publisher_that_has_sent_nothing_is_reported_as_such() -> None:
     """What it sends is kept however old it is, so nothing can have been forgotten."""
     async with robot() as node:
         node.create_publisher(Int32, "out", 10)
@@ -526,7 +526,7 @@ async def test_a_long_list_of_causes_is_asked_for_in_several_questions(
     assert [cause.source.unknown for cause in found.sent[0].causes if cause.source] == ["", "", ""]
 
 
-async def test_nobody_tells_what_another_has_sent() -> None:
+async def test_nobody_reveals_what_another_has_sent() -> None:
     """A context that lies could replace what is true."""
     log = CauseLog()
     transport = Answering({})
@@ -554,7 +554,7 @@ def test_a_name_of_another_process_forges_no_line() -> None:
     ]
 
 
-async def test_who_cannot_tell_is_named_and_the_others_are_there() -> None:
+async def test_contexts_that_cannot_report_are_named_and_the_others_are_included() -> None:
     """Frozen and older processes, and answers in another form or in another's name."""
     other = encoded(answer(CauseLog(), "d4", CauseQuestion()))
     transport = Answering({"a1": None, "b2": b"", "c3": b"\xff", "d4": other, "e5": other})

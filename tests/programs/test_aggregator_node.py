@@ -107,7 +107,7 @@ async def test_parts_are_shown_under_the_paths_of_their_analyzers(
     }
 
 
-async def test_what_no_analyzer_takes_is_other_until_it_is_stale(
+async def test_what_no_analyzer_matches_is_other_until_it_is_stale(
     panel: Callable[..., Panel],
 ) -> None:
     """It is forgotten after 5 seconds."""

@@ -86,7 +86,7 @@ async def test_a_restriction_is_not_ignored(
         gateway_of(start, original, **{name: value})
 
 
-async def test_a_restriction_to_everything_is_none(start: Start) -> None:
+async def test_a_restriction_to_everything_does_not_restrict(start: Start) -> None:
     """Launch files write out the defaults."""
     gateway_of(start, BOTH[0], topic_whitelist=[".*"], tls=False)
     gateway_of(start, BOTH[1], topics_glob="['*']")

@@ -116,7 +116,7 @@ async def test_pixel_formats_are_those_of_usb_cam(
     assert float(luma.mean()) == pytest.approx(80, abs=8)
 
 
-async def test_jpeg_of_a_camera_is_passed_on_as_it_is(
+async def test_jpeg_of_a_camera_is_passed_on_unchanged(
     start: Start, viewer: Viewer, videos: Path
 ) -> None:
     """As usb_cam does with `mjpeg`; there is no `image_raw` then."""
@@ -190,7 +190,7 @@ async def test_a_calibration_is_kept_in_its_file(
     st.lists(st.floats(-1e3, 1e3), max_size=8),
     st.integers(1, 10_000),
 )
-def test_a_calibration_comes_back_as_it_was(
+def test_a_calibration_is_restored_unchanged(
     numbers: list[float], d: list[float], size: int
 ) -> None:
     """Through its file."""

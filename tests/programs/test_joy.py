@@ -297,7 +297,7 @@ async def test_feedback_rumbles_for_a_second(desk: Desk, node_factory: Callable[
 
 @pytest.mark.usefixtures("motors")
 @pytest.mark.parametrize(("effects", "warnings"), [([RUMBLE], 1), ([], 0)])
-async def test_a_joystick_that_cannot_rumble_goes_on(
+async def test_a_joystick_that_cannot_rumble_keeps_working(
     desk: Desk,
     node_factory: Callable[..., Any],
     capsys: pytest.CaptureFixture[str],

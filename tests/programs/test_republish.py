@@ -105,7 +105,7 @@ async def test_compressed_images_become_raw_ones(start: Start, viewer: Viewer) -
     assert np.array_equal(to_numpy(seen), GRADIENT)
 
 
-async def test_nothing_is_heard_while_nobody_looks(start: Start, viewer: Viewer) -> None:
+async def test_nothing_is_received_while_nobody_looks(start: Start, viewer: Viewer) -> None:
     """A camera may then stand still, or its network be free."""
     node = start(Republisher)
     publisher = viewer.node.create_publisher(Image, "in", 10)

@@ -99,7 +99,7 @@ def vector(part: Any) -> list[float]:
     return [getattr(part, name) for name in names]
 
 
-async def test_fixed_joints_and_the_description_are_there_for_those_who_come_later(
+async def test_late_subscribers_receive_fixed_joints_and_the_description(
     robot: Callable[..., Any],
 ) -> None:
     """RViz and others start after the robot."""
@@ -164,7 +164,7 @@ async def test_a_prefix_is_put_before_each_frame(robot: Callable[..., Any]) -> N
     assert watcher.fixed[0].child_frame_id == "left/mount"
 
 
-async def test_a_description_may_change_and_what_is_none_is_refused(
+async def test_a_description_may_change_and_an_invalid_one_is_refused(
     robot: Callable[..., Any],
 ) -> None:
     """A robot gets another gripper while it runs."""

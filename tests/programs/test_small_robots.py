@@ -19,7 +19,7 @@ from tests.programs.small_robots import FROM_PX4, TO_PX4, Arm, Create3, FlightCo
 Factory = Callable[..., Any]
 
 
-async def test_px4_flies_while_it_is_told_to(node_factory: Factory) -> None:
+async def test_px4_flies_while_commanded_to(node_factory: Factory) -> None:
     """With the QoS of its agent: best effort, and transient local from it."""
     flown: FlightController = node_factory(FlightController)
     pilot: Node = node_factory("pilot")

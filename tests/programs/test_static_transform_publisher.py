@@ -76,7 +76,7 @@ def test_arguments_that_say_none_are_refused_in_the_words_of_tf2_ros(args: str, 
         given(args)
 
 
-async def test_the_transform_is_there_for_those_who_come_later(
+async def test_late_subscribers_receive_the_transform(
     node_factory: Callable[..., Any],
 ) -> None:
     """And the parameters say what it is."""

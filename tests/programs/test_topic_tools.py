@@ -65,7 +65,7 @@ def ready(manual_clock: ManualClock) -> Callable[[], Awaitable[None]]:
     return wait
 
 
-async def test_a_relay_publishes_what_it_hears(
+async def test_a_relay_publishes_what_it_receives(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
 ) -> None:
     """Of a type that is known by its publishers only, on a topic with the suffix."""

@@ -171,7 +171,7 @@ async def test_a_turtle_can_be_elsewhere_at_once(pond: Pond) -> None:
     assert pond.color == Color(r=0xB3, g=0xB8, b=0xFF)
 
 
-async def test_nobody_is_sent_to_infinity(pond: Pond) -> None:
+async def test_no_turtle_is_teleported_to_infinity(pond: Pond) -> None:
     """The caller is told."""
     with pytest.raises(ServiceError, match="x is inf; use a finite number"):
         await pond.call(TeleportAbsolute, "turtle1/teleport_absolute", x=math.inf)
