@@ -100,7 +100,9 @@ class Waiting:
         self.accept = threading.Event()
         self.executing: list[Any] = []
         self.cancelled: list[Any] = []
-        rclpy.action.ActionServer(
+        self.node = node
+        self.ended = threading.Event()
+        self.server = rclpy.action.ActionServer(
             node,
             DockAction,
             "dock",
@@ -122,7 +124,8 @@ class Waiting:
             if handle.request.dock:
                 handle.succeed()
                 return DockAction.Result()
-            threading.Event().wait(0.01)
+            if self.ended.wait(0.01):
+                return DockAction.Result()
         handle.canceled()
         self.cancelled.append(handle)
         return DockAction.Result()
@@ -173,6 +176,42 @@ def test_a_goal_is_cancelled_when_the_behaviour_is_interrupted(node: Any, execut
     behaviour.stop(Status.INVALID)
     spin(executor, lambda: "cancelled" in behaviour.feedback_message)
     spin(executor, lambda: bool(server.cancelled))
+
+
+def test_a_goal_is_cancelled_when_the_tree_is_shut_down(node: Any, executor: Any) -> None:
+    """As at Ctrl-C: upstream destroys the client, and the robot goes on."""
+    server = Waiting(rclpy.create_node("server"))
+    executor.add_node(server.node)
+    server.accept.set()
+    behaviour = docking(node, dock=False)
+    tick(behaviour)
+    spin(executor, lambda: bool(server.executing) and behaviour.goal_handle is not None)
+
+    behaviour.shutdown()
+    node.destroy_node()
+
+    spin(executor, lambda: bool(server.cancelled))
+
+
+def test_a_server_that_has_gone_is_named_once(
+    node: Any, executor: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The behaviour goes on waiting, as upstream, and somebody has to know for what."""
+    server = Waiting(rclpy.create_node("server"))
+    executor.add_node(server.node)
+    server.accept.set()
+    behaviour = docking(node, dock=False)
+    tick(behaviour)
+    spin(executor, lambda: bool(server.executing) and behaviour.goal_handle is not None)
+    server.ended.set()
+    server.server.destroy()
+    capfd.readouterr()
+
+    spin(executor, lambda: not behaviour.action_client.server_is_ready())
+    statuses = [tick(behaviour) for _ in range(3)]
+
+    assert statuses == [Status.RUNNING] * 3
+    assert capfd.readouterr().err.count("no action server [dock], still waiting") == 1
 
 
 def test_a_goal_that_is_accepted_after_the_interruption_is_cancelled(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Final
 
 import py_trees
@@ -14,7 +15,9 @@ from py_trees.common import Access, Status
 
 from py_trees_ros._waiting import wait_for_server
 from py_trees_ros.utilities import node_among
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient
+from rclpy.exceptions import InvalidHandle
 
 __all__ = ["AttributesFromBlackboard", "FromBlackboard", "FromCallback", "FromConstant"]
 
@@ -36,7 +39,9 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
     """Sends a goal from the blackboard, and runs until it has ended.
 
     It fails if there is no goal, or if the goal is rejected or does not succeed. A goal is
-    cancelled when the behaviour is interrupted, even if it is accepted only later.
+    cancelled when the behaviour is interrupted, even if it is accepted only later, and when the
+    tree is shut down. A behaviour whose server has gone keeps running, and warns once for each
+    goal.
 
     Args:
         name: The behaviour's name.
@@ -81,6 +86,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         self.result_message: Any = None
         self.result_status: int | None = None
         self.result_status_string: str | None = None
+        self._has_warned = False
 
     def setup(self, **kwargs: Any) -> None:
         """Create the client, and wait for the server.
@@ -130,6 +136,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             self.feedback_message = "goal rejected"
             return Status.FAILURE
         if self.result_status is None:
+            self._warn_without_server()
             return Status.RUNNING
         log = self.node.get_logger()
         log.debug(f"goal result [{self.qualified_name}]")
@@ -141,6 +148,15 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         self.feedback_message = "failed"
         return Status.FAILURE
 
+    def _warn_without_server(self) -> None:
+        if self._has_warned:
+            return
+        with suppress(RCLError):  # a signal has shut the context down
+            if not self.action_client.server_is_ready():
+                self._has_warned = True
+                self.feedback_message = f"no action server [{self.action_name}], still waiting"
+                self.node.get_logger().warning(f"{self.feedback_message} [{self.qualified_name}]")
+
     def terminate(self, new_status: Status) -> None:
         """Cancel the goal if the behaviour is interrupted."""
         self.logger.debug(f"{self.qualified_name}.terminate({self.status}->{new_status})")
@@ -148,9 +164,14 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
             self.send_cancel_request()
 
     def shutdown(self) -> None:
-        """Destroy the client."""
-        if self.action_client is not None:
-            self.action_client.destroy()
+        """Cancel the goal that is under way, and destroy the client."""
+        if self.action_client is None:
+            return
+        if self.status is Status.RUNNING:
+            with suppress(InvalidHandle, RCLError):  # the node or its context ended before the tree
+                self.send_cancel_request()
+            self._forget()
+        self.action_client.destroy()
 
     def feedback_callback(self, msg: Any) -> None:
         """Use feedback of the server as feedback of the behaviour."""
