@@ -208,8 +208,7 @@ class Actor:
         if not self._plan.put(rows, since.nanoseconds + self._period_ns, now_ns):
             over_s = (now_ns - since.nanoseconds) / S_TO_NS - (len(rows) + 1) / self._fps
             self._warn(
-                f"a chunk of {len(rows)} actions was dropped: its last one was over {over_s:.3f} s "
-                "ago"
+                f"a chunk of {len(rows)} actions was dropped: its last one ended {over_s:.3f} s ago"
             )
         self._send()
         self._refuse_if_stopped()
@@ -257,7 +256,7 @@ class Actor:
             row, column = np.argwhere(~np.isfinite(rows))[0]
             raise ValueError(
                 f"chunk: {self._labels[column]} of action {row} is "
-                f"{rows[row, column]}; nothing of the chunk is sent"
+                f"{rows[row, column]}; no action of the chunk is sent"
             )
         return rows
 
@@ -307,7 +306,7 @@ class Actor:
 
     def _waiting(self, now_ns: int) -> str:
         asked_s = (now_ns - (self._asked_ns or now_ns)) / S_TO_NS
-        return f"the policy was asked {asked_s:.3f} s ago, and has not answered"
+        return f"the policy was asked {asked_s:.3f} s ago and has not answered"
 
     def _warn(self, text: str) -> None:
         self._node.get_logger().warning(text, throttle_duration_sec=QUIET_SEC)

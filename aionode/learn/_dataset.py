@@ -402,7 +402,7 @@ def check_columns(info: dict[str, Any], rows: pa.Table) -> Iterator[str]:
         if field.type != wanted.get(field.name):
             yield f"data: the column {field.name} is {field.type}, and not {wanted.get(field.name)}"
         elif rows[field.name].null_count:
-            yield f"data: the column {field.name} has empty places"
+            yield f"data: the column {field.name} has missing values"
 
 
 DTYPES: Final = {"float32": "float", "float64": "double", "int64": "int64"}
@@ -426,7 +426,7 @@ def check_rows(
         if length != episode["length"] or not length:
             yield f"{name}: length {episode['length']}, with {length} rows"
         if not (numbers["episode_index"][span] == number).all():
-            yield f"{name}: its rows are of another one"
+            yield f"{name}: its rows belong to another episode"
         frames = np.arange(length)
         if not np.array_equal(numbers["frame_index"][span], frames):
             yield f"{name}: frame_index does not count its rows"

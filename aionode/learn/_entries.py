@@ -96,7 +96,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         if self.names and len(self.names) != len(self.paths):
             raise ValueError(f"names: {len(self.names)} names for {len(self.paths)} numbers")
         if len(set(self.labels)) != len(self.labels):
-            raise ValueError("names: a name is there twice; each needs its own")
+            raise ValueError("names: a name is given twice; each number needs its own")
         if self.stamp == "capture" and not self.has_header:
             raise ValueError(f"stamp: {self.type} has no header with a time; receive fits")
 
@@ -214,7 +214,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         elif self.type not in IMAGES:
             raise ValueError(f"image: {self.type} is no picture; {' or '.join(IMAGES)} fits")
         elif self.fields or self.names:
-            raise ValueError("fields: pictures have none")
+            raise ValueError("fields: images have none; leave them out")
         elif self.resample == "interpolate":
             raise ValueError("resample: pictures are not interpolated; hold fits")
         elif not (0 < self.height <= 16_384 and 0 < self.width <= 16_384):
@@ -291,7 +291,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
             if isinstance(limit, tuple) and len(limit) != len(self.paths):
                 raise ValueError(f"{name}: {len(limit)} limits for {len(self.paths)} numbers")
         if not np.all(self.limits[0] <= self.limits[1]):
-            raise ValueError("lower: greater than upper, or no number")
+            raise ValueError("lower: greater than upper, or not a number")
         if not (math.isfinite(self.lease_sec) and self.lease_sec > 0):
             raise ValueError(f"lease_sec: {self.lease_sec:g}; a number of seconds fits")
         for name, make in (("template", self.zero), ("stop", self.stop_message)):

@@ -124,7 +124,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         if self.reference and self.reference not in topics:
             near = "".join(difflib.get_close_matches(self.reference, topics, 1))
             raise ValueError(
-                f"reference: {self.reference!r} is no topic of an observation"
+                f"reference: {self.reference!r} is not the topic of an observation"
                 + (f"; did you mean {near}?" if near else f"; {', '.join(topics)} fit")
             )
         for name in {each.feature for each in self.entries}:
@@ -370,7 +370,7 @@ def check_keys(path: str, node: Any) -> None:
             if name in seen:
                 line = key.start_mark.line + 1
                 shown = escaped(name[:100], one_line=True)
-                raise ContractError(path, f"line {line}: {shown}", "there twice; once fits")
+                raise ContractError(path, f"line {line}: {shown}", "there twice; remove one")
             seen.add(name)
             check_keys(path, value)
     elif isinstance(node, yaml.SequenceNode):
