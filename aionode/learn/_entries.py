@@ -210,7 +210,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ):
                 raise ValueError(f"infinity: {self.infinity:g}; a finite number fits")
         elif self.infinity is not None:
-            raise ValueError("infinity: pictures have none")
+            raise ValueError("infinity: images have none; leave it out")
         elif self.type not in IMAGES:
             raise ValueError(f"image: {self.type} is no picture; {' or '.join(IMAGES)} fits")
         elif self.fields or self.names:

@@ -102,7 +102,7 @@ class Waiting:
         self.cancelled: list[Any] = []
         self.node = node
         self.ended = threading.Event()
-        self.server = rclpy.action.ActionServer(
+        self.server: Any = rclpy.action.ActionServer(
             node,
             DockAction,
             "dock",
