@@ -159,6 +159,7 @@ async def test_wheels_that_were_frozen_stop_before_anything_else(route: str) -> 
             process.send(signal.SIGSTOP)
             await command(publisher, 1.5)
             before = process.rest_so_far()
+            resumed_ns = now_ns()
             process.send(signal.SIGCONT)
             await command(publisher, 0.5)
             lines = process.rest_so_far()[len(before) :]
@@ -170,8 +171,9 @@ async def test_wheels_that_were_frozen_stop_before_anything_else(route: str) -> 
     assert all(int(stamp) < stopped_ns - S for _, stamp in log[:at])
     assert [word for word, stamp in log[at + 1 :] if word == "stop"] == []
     assert len(log) > at + 1
-    early = [(int(stamp) - stopped_ns) / S for _, stamp in log[at + 1 :]]
-    assert min(early) > -0.001, early  # the time that a call takes
+    # On a busy machine, a command may be sent while it wakes up.
+    early = [(int(stamp) - resumed_ns) / S for _, stamp in log[at + 1 :]]
+    assert min(early) > 0, early
 
 
 def drives(process: Process) -> None:
