@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 import mcp_types as types
@@ -56,17 +56,21 @@ def failure(error: Exception) -> types.CallToolResult:
 
 def bounded(values: Mapping[str, Any], most_bytes: int) -> dict[str, Any]:
     """Return values shortened so that their JSON fits, without the ends of long lists and texts."""
-    fitting = {str(key): cut(value, *SIZES[0]) for key, value in values.items()}
     for items, characters in SIZES:
-        fitting = {str(key): cut(value, items, characters) for key, value in values.items()}
+        # Each part takes a byte at least: with more of them, these sizes do not fit.
+        parts = iter(range(most_bytes))
+        fitting = {str(key): cut(value, items, characters, parts) for key, value in values.items()}
         if len(msgspec.json.encode(fitting)) <= most_bytes:
             return fitting
     return {"left_out": f"the answer has more than {most_bytes} bytes; request less of it"}
 
 
-def cut(value: Any, items: int, characters: int, level: int = 0) -> Any:
-    """Return a value with lists and texts cut to a length, each with the number of what is cut."""
-    if level > MOST_LEVELS:
+def cut(value: Any, items: int, characters: int, parts: Iterator[int], level: int = 0) -> Any:
+    """Return a value with lists and texts cut to a length, each with the number of what is cut.
+
+    It takes one of `parts` for itself and for each value within, and looks at none without one.
+    """
+    if level > MOST_LEVELS or next(parts, None) is None:
         return "..."
     if isinstance(value, str):
         if len(value) <= characters:
@@ -74,13 +78,13 @@ def cut(value: Any, items: int, characters: int, level: int = 0) -> Any:
         return f"{value[:characters]}... ({len(value)} characters)"
     if isinstance(value, Mapping):
         kept = {
-            str(key): cut(part, items, characters, level + 1)
+            str(key): cut(part, items, characters, parts, level + 1)
             for key, part in list(value.items())[:items]
         }
         if len(value) > items:
             kept["..."] = f"{len(value) - items} more"
         return kept
     if isinstance(value, list | tuple):
-        parts = [cut(part, items, characters, level + 1) for part in value[:items]]
-        return [*parts, f"... {len(value) - items} more"] if len(value) > items else parts
+        kept_items = [cut(part, items, characters, parts, level + 1) for part in value[:items]]
+        return [*kept_items, f"... {len(value) - items} more"] if len(value) > items else kept_items
     return value
