@@ -453,9 +453,8 @@ def depths_of_rvl(
     data = data[RVL_HEAD.size : RVL_HEAD.size + 4 * count + 16]  # a pixel has 7 nibbles at most
     words = np.frombuffer(data[: len(data) - len(data) % 4], "<u4").astype(">u4")
     depths = np.zeros(count, np.uint16)
-    done = followers = (
-        0  # pixels, and those that have depths of the run that began in a block before
-    )
+    done = 0  # pixels
+    followers = 0  # depths that are left of the run that began in the block before
     last = np.uint16(0)
     rest = np.empty(0, np.int32)
     for block in numbers_of_rvl(words.view(np.uint8)):

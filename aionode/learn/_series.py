@@ -67,9 +67,9 @@ class Series:
 def in_order(series: Series) -> Series:
     """Return the messages whose times are in the order in which they arrived.
 
-    A time that contradicts others is taken as wrong if it is further from its arrival than any
-    other of the topic, so that one time in the future does not cost all later messages. Of the
-    rest, messages that are not later than the one before are left out.
+    A time that contradicts others is taken as wrong if it is over `OTHER_CLOCK` further from its
+    arrival than is usual for the topic, so that one time in the future does not cost all later
+    messages. Of the rest, messages that are not later than the one before are left out.
     """
     times = series.times
     if (np.diff(times) > 0).all():

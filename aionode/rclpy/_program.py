@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from importlib import import_module
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import find_spec
 from pathlib import Path
@@ -63,6 +62,7 @@ def main(argv: Sequence[str]) -> None:
     """
     folders, is_module, name, arguments = parsed(argv)
     # not loaded for the usage text
+    from aionode.rclpy._defects import prepare
     from aionode.rclpy._finder import install, shared_errors_take_names
 
     workspace = folders["--workspace"][-1] if folders["--workspace"] else None
@@ -74,8 +74,7 @@ def main(argv: Sequence[str]) -> None:
         list_imports(arguments)
     sys.path[:1] = folders["--path"] or sys.path[:1]
     shared_errors_take_names()
-    if Path(name).name == "xacro":  # its handler of errors takes for granted that this is imported
-        import_module("xml.parsers.expat")
+    prepare(name)
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
     sys.argv = [str(module.__file__), *arguments]
