@@ -203,6 +203,9 @@ def test_a_first_afternoon_with_a_robot_has_no_stumble(terminal: Terminal) -> No
     recording = terminal.start("bag", "record", "--all", "--output", "run")
     assert recording.stdout is not None
     assert "Recording to run" in recording.stdout.readline()
+    heard = "/cmd_vel [geometry_msgs/msg/Twist] 2 subscribers"  # the base and the recorder
+    while heard not in terminal.do("topic", "list", "--verbose"):
+        pass
     goal = ("action", "send_goal", "/go_to", "minibot_interfaces/action/GoTo")
     assert "SUCCEEDED" in terminal.do(*goal, "{x: 0.3}", "--feedback")
     assert "SUCCEEDED" in terminal.do(*goal, "{x: 0.3}")  # it is there: within the default of 0.05

@@ -170,7 +170,8 @@ async def test_a_layer_is_drawn_from_above(node: Node, topic: str) -> None:
     async with page_of(node) as page:
         await show(page, topic)
 
-        assert await page.value("document.querySelector('#scene .fixed').value") == "map"
+        # The layer may be drawn in its own frame before the transforms have come.
+        await page.until("document.querySelector('#scene .fixed').value === 'map'")
         if topic != "/map":
             assert await reds(page) > 3
 

@@ -7,6 +7,7 @@ import json
 import os
 import secrets
 import socket
+from collections import deque
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import ExitStack, asynccontextmanager, closing, contextmanager, suppress
 from typing import Any
@@ -57,27 +58,30 @@ def ros_value(value: Any) -> Any:
     return value
 
 
-given_ports: set[int] = set()
-"""Ports that were handed out, and are perhaps not listened on yet."""
+given_ports = deque[int](maxlen=500)
+"""The last ports that were handed out, which are perhaps not listened on yet."""
 
 
 def free_ports(count: int) -> list[int]:
     """Return free loopback ports that nothing else will use by chance.
 
     They are below the ephemeral ports, which the system assigns to other sessions, such as those of
-    another run of these tests. None is returned twice.
+    another run of these tests. Each worker of a run has ports of its own: its sessions look for
+    each other also at those that nobody listens on, and would join a test of another worker.
     """
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
     found: list[int] = []
     with ExitStack() as until_all_are_found:
         while len(found) < count:
-            port = 10_000 + secrets.randbelow(22_000)
+            port = 10_000 + secrets.randbelow(22_000 // workers) * workers + worker
             if port in given_ports:
                 continue
             one = until_all_are_found.enter_context(socket.socket())
             with suppress(OSError):
                 one.bind(("127.0.0.1", port))
                 found.append(port)
-                given_ports.add(port)
+                given_ports.append(port)
     return found
 
 
