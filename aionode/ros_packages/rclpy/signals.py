@@ -50,9 +50,6 @@ like SIGTERM, unless the program or ``nohup`` has installed something else."""
 AGAIN_S = 1.0
 """How long after a signal a SIGINT counts as part of it, and does not become a KeyboardInterrupt.
 
-A terminal sends its signals to all processes of a group, and processes that have started others
-forward them. A KeyboardInterrupt would end the cleanup that the first signal began.
-
 A terminal sends its signals to all processes of a group, and those that have started others forward
 them. A KeyboardInterrupt would end the cleanup that the first signal began.
 """
