@@ -15,7 +15,7 @@ import traceback
 from collections.abc import Callable, Coroutine, Sequence
 from typing import Any, Final, Self
 
-from aionode._process.signals import signals_to
+from aionode._process.signals import signals_to, woken_by_signals
 from aionode._process.tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
 from aionode.endpoints.core.node_core import core_of, is_named
@@ -225,11 +225,13 @@ class Stop:
 async def _until_stopped(nodes: Sequence[Runnable], stop: Stop, freeze: Freeze) -> None:
     """Run everything, and return normally if a signal stops it."""
     stop.begin()
-    asyncio.get_running_loop().call_later(STARTED_SEC, freeze)
+    loop = asyncio.get_running_loop()
+    loop.call_later(STARTED_SEC, freeze)
     try:
-        async with asyncio.TaskGroup() as tasks:
-            for node in nodes:
-                tasks.create_task(_coroutine_of(node))
+        with woken_by_signals(loop):
+            async with asyncio.TaskGroup() as tasks:
+                for node in nodes:
+                    tasks.create_task(_coroutine_of(node))
     except asyncio.CancelledError:
         if not stop.wanted:
             raise

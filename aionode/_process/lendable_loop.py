@@ -42,10 +42,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextvars import Context
 
-__all__ = ["LendableLoop", "Readers"]
+__all__ = ["LONGEST_WAIT_S", "LendableLoop", "Readers"]
 
-LONGEST_WAIT_S = 3600.0
-"""Maximum wait for descriptors."""
+LONGEST_WAIT_S = 1.0
+"""Longest wait of one system call, in seconds, for a lock or for descriptors.
+
+Python handles signals between two bytecodes of the main thread. One that comes just before the
+system call, or in another thread, does not end it, and is handled only after it.
+"""
 
 LONGEST_END_S = 1.0
 """How long closing a loop waits for the thread that polls in its place."""
@@ -208,13 +212,15 @@ class Readers:
         """Wait until something is readable or `rouse` is called, with millisecond resolution.
 
         Args:
-            timeout_s: The longest wait in seconds, None for no limit; it returns after an hour in
-                any case, as the system call cannot wait for a month.
+            timeout_s: The longest wait in seconds, None for no limit; it returns after
+                `LONGEST_WAIT_S` in any case.
 
         Returns:
             The argument for `call`; empty after a timeout.
         """
-        return self._epoll.poll(None if timeout_s is None else min(timeout_s, LONGEST_WAIT_S))
+        return self._epoll.poll(
+            LONGEST_WAIT_S if timeout_s is None else min(timeout_s, LONGEST_WAIT_S)
+        )
 
     def call(self, readable: list[tuple[int, int]]) -> bool:
         """Borrow the loop and call the callbacks of these descriptors.

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import _thread
+import asyncio
 import contextlib
 import os
 import signal
+import socket
 import threading
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["signals_to"]
+__all__ = ["signals_to", "woken_by_signals"]
 
 SAME_SEC: Final = 1.0
 """Further signals of any kind within this time after the first are ignored.
@@ -46,6 +48,37 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
         yield
     finally:
         handler.close()
+
+
+@contextlib.contextmanager
+def woken_by_signals(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
+    """Wake a running event loop for each signal, so that Python calls its handler.
+
+    Python does so between two bytecodes of the main thread. A signal that comes just before the
+    loop goes to sleep, or in another thread, would wait until something else wakes the loop. Other
+    loops than asyncio's selector loop wake themselves; a wakeup descriptor of the program stays.
+    """
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or not isinstance(loop, asyncio.SelectorEventLoop):
+        yield
+        return
+    reader, writer = socket.socketpair()
+    with reader, writer:
+        reader.setblocking(False)
+        writer.setblocking(False)
+        before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+        if before == -1:
+            loop.add_reader(reader, reader.recv, 4096)
+        else:
+            signal.set_wakeup_fd(before)
+        try:
+            yield
+        finally:
+            if before == -1:
+                loop.remove_reader(reader)
+                found = signal.set_wakeup_fd(-1)
+                if found != writer.fileno():  # the program's, installed meanwhile
+                    signal.set_wakeup_fd(found)
 
 
 def ending_signals() -> list[signal.Signals]:

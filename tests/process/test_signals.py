@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import socket
 import subprocess
 import threading
 import time  # noqa: TID251  # how long a process takes to end is what is tested
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import aionode
+from aionode._process.signals import woken_by_signals
 from tests.support.program import Program
 
 pty = pytest.importorskip("pty", reason="pseudo-terminals are of Unix")
@@ -295,6 +297,56 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
     assert "waits up to 5 s for timer of 0.01 s (callback work) in a thread" in line
     assert (status, out) == (130, "")
     assert err == "aionode: ended at once by a second signal (SIGINT)\n"
+
+
+IN_ANOTHER_THREAD = """
+import os, signal, threading, time
+import aionode.runner
+
+aionode.runner.STARTED_SEC = 3600.0  # nothing else wakes the loop
+
+def send():
+    while open(f"/proc/self/task/{os.getpid()}/stat").read().rsplit(")", 1)[1].split()[0] != "S":
+        time.sleep(0.01)
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+
+async def main():
+    asyncio.get_running_loop().call_soon(threading.Thread(target=send, daemon=True).start)
+    try:
+        await asyncio.Event().wait()
+    finally:
+        print("cancelled", flush=True)
+
+aionode.run(main, args=[])
+"""
+
+
+@pytest.mark.parametrize("loop", ["asyncio", "uvloop"])
+def test_a_signal_that_does_not_interrupt_the_main_thread_wakes_the_loop(loop: str) -> None:
+    """Such as one that comes just before the loop sleeps: nobody can time that, so a thread's."""
+    env = {**os.environ, "AIONODE_LOOP": loop}
+    with Program(IN_ANOTHER_THREAD, env=env, fresh=True) as program:
+        assert program.end() == (0, "cancelled\n", "")
+
+
+def test_the_wakeup_descriptor_of_a_program_stays_its_own() -> None:
+    """As other libraries install one; and there is none after the loop has ended."""
+
+    async def main(loop_wakes: bool) -> None:
+        with woken_by_signals(asyncio.get_running_loop()):
+            found = signal.set_wakeup_fd(-1)
+            signal.set_wakeup_fd(found, warn_on_full_buffer=False)
+            assert (found == own.fileno()) is not loop_wakes
+
+    own, other = socket.socketpair()
+    with own, other:
+        own.setblocking(False)
+        asyncio.run(main(loop_wakes=True))
+        assert signal.set_wakeup_fd(own.fileno()) == -1
+        try:
+            asyncio.run(main(loop_wakes=False))
+        finally:
+            assert signal.set_wakeup_fd(-1) == own.fileno()
 
 
 POOL_THAT_IS_STOPPED = """

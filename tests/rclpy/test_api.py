@@ -548,6 +548,44 @@ def test_a_program_ends_however_it_ends(
     assert ("LookupError: on purpose" in errors) == (how == "fail")
 
 
+SIGNAL_IN_A_THREAD = """\
+import os, signal, threading, time
+import rclpy
+
+def send():
+    while open(f"/proc/self/task/{os.getpid()}/stat").read().rsplit(")", 1)[1].split()[0] != "S":
+        time.sleep(0.01)
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+
+rclpy.init()
+node = rclpy.create_node("sleeping")
+guard = node.create_guard_condition(threading.Thread(target=send, daemon=True).start)
+guard.trigger()
+try:
+    rclpy.spin(node)
+except rclpy.executors.ExternalShutdownException:
+    pass
+print("ended", flush=True)
+"""
+
+
+def test_a_signal_that_does_not_interrupt_a_wait_is_handled(tmp_path: Path) -> None:
+    """Such as one that comes just before the wait: nobody can time that, so one of a thread."""
+    program = tmp_path / "sleeping.py"
+    program.write_text(SIGNAL_IN_A_THREAD)
+    process = start(
+        ["-m", "aionode.rclpy", str(program)],
+        env={**os.environ, **isolated_environment(), "PYTHONFAULTHANDLER": "1"},
+        fresh=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    printed, _ = said_until_end(process)
+
+    assert (printed, process.returncode) == ("ended\n", 0)
+
+
 ENDING_PUBLISHER = """\
 import rclpy
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile

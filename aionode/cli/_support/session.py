@@ -178,7 +178,7 @@ def run_until_stopped(
     Raises:
         BaseException: what `work` raised; the most informative error if there are several.
     """
-    from aionode._process.signals import signals_to
+    from aionode._process.signals import signals_to, woken_by_signals
     from aionode.runner import Stop
 
     stop = Stop()
@@ -189,7 +189,7 @@ def run_until_stopped(
 
     async def stoppable() -> int | None:
         stop.begin()
-        with signals_to(on_signal):
+        with signals_to(on_signal), woken_by_signals(asyncio.get_running_loop()):
             try:
                 return await work or 0
             except asyncio.CancelledError:

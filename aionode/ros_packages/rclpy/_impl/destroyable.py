@@ -6,19 +6,14 @@ from _thread import allocate_lock
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn, Protocol, Self
 
+from aionode._process.lendable_loop import LONGEST_WAIT_S
 from aionode.clock import MachineTime
 from rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
-
-LONGEST_WAIT_S = 3600.0
-"""Longest wait of one system call, in seconds, for a lock or for descriptors.
-
-Some systems refuse more than 24 days, so a longer wait consists of several.
-"""
+__all__ = ["Arrivals", "Destroyable", "Signal", "Wakeup"]
 
 steady_ns = MachineTime().steady_ns
 
@@ -54,7 +49,9 @@ class Wakeup:
     def wait(self, timeout_sec: float | None) -> bool:
         """Wait for a wake-up; return whether one arrived within the limit. None means no limit."""
         if timeout_sec is None:
-            return self._lock.acquire()
+            while not self._lock.acquire(timeout=LONGEST_WAIT_S):
+                pass
+            return True
         ends_ns = steady_ns() + timeout_sec * 1e9
         while timeout_sec > LONGEST_WAIT_S:
             if self._lock.acquire(timeout=LONGEST_WAIT_S):
