@@ -1,12 +1,12 @@
 """Gives up connections to processes of this machine that a signal or a debugger has stopped.
 
-Zenoh would notice by its lease: each process tells each other one, again and again, that it is
-alive. With many processes, that is what wakes an idle one. The system knows which processes are
-stopped, so each process looks at the others, which wakes none of them, and sessions that can be
-looked at have a long lease. Peers that cannot look, such as nodes of ROS 2 and those in other
-containers, notice a stopped process by that lease.
+Zenoh would notice by its lease: each process regularly tells every other one that it is alive,
+which is what wakes an idle process among many. The system knows which processes are stopped, so
+each process checks the others without waking them, and sessions that can be checked have a long
+lease. Peers that cannot check, such as nodes of ROS 2 and those in other containers, notice a
+stopped process when that lease ends.
 
-A process that waits long for a processor is not stopped, and is not given up.
+A process that waits a long time for a processor is not stopped, and is not given up.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ __all__ = ["StoppedPeers"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LOOK_S: Final = 2.0
-"""The interval of looks, in seconds."""
+"""The interval of checks, in seconds."""
 
 LOOKS: Final = 4
-"""How often in a row a process must be seen stopped: it is given up after 6 to 10 s, as by a lease
-of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
+"""Number of consecutive checks that must find a process stopped: it is given up after 6 to 10 s, as
+with a lease of 10 s. Checks are counted, not seconds, as this process may have been stopped too."""
 
 
 class StoppedPeers:
@@ -48,18 +48,18 @@ class StoppedPeers:
     def __init__(self, participants: Collection[str]) -> None:
         self._participants = participants
         self._session: zenoh.Session | None = None
-        # The peers, and the processes of those that can be looked at.
+        # The peers, and the processes of those that can be checked.
         self._processes: dict[str, WatchedProcess | None] = {}
         self._looks: dict[str, int] = {}  # how often each was seen stopped, in a row
         self._later = Later()
 
     def start(self, session: zenoh.Session) -> None:
-        """Look at the peers of a session from now on."""
+        """Check the peers of a session from now on."""
         self._session = session
         self._later.call(LOOK_S, self._look)
 
     def stop(self) -> None:
-        """Stop looking."""
+        """Stop checking."""
         self._later.cancel()
         self._session = None
         for process in self._processes.values():
@@ -95,7 +95,7 @@ class StoppedPeers:
             )
 
     def _meet(self) -> None:
-        """Look at new peers from now on, and no longer at those that have gone."""
+        """Check new peers from now on, and no longer those that have gone."""
         processes = self._processes
         for zid in processes.keys() - self._participants:
             process = processes.pop(zid)

@@ -52,46 +52,46 @@ BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 late readers."""
 
 GOSSIPING: Final = 4
-"""Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
-those of other programs. One is too few: Zenoh drops gossip on a connection that it is just taking
-into use. With all of them a hundred would send half a million messages.
+"""Number of listed sessions whose gossip introduces sessions that are not listed, such as those of
+other programs. One is too few: Zenoh drops gossip on a connection that is just starting. If all
+gossiped, a hundred sessions would send half a million messages.
 """
 
 LEASE_MS: Final = 10_000
-"""Time without a sign of a process after which its peers take it for dead, in milliseconds."""
+"""How long a process may be silent before its peers consider it dead, in milliseconds."""
 
 LEASE_MS_EACH: Final = 500
 """Addition to `LEASE_MS` for each process that was there when the session started, in milliseconds.
 
-Where a hundred start at once, each is silent for more than ten seconds while it is connected with
-the others. Those that give it up connect anew, and all of it takes longer still.
+When a hundred start at once, each is silent for more than ten seconds while it connects with the
+others. Peers that gave it up would connect again, and everything would take even longer.
 """
 
 MOST_LEASE_MS: Final = 60_000
-"""The longest of these leases, which is that of ROS 2 nodes: any user of the machine can be listed
-as many processes."""
+"""The longest of these leases, as for ROS 2 nodes: any user of the machine can list any number of
+sessions."""
 
 KEEP_ALIVES: Final = 4
-"""Number of signs of life in a lease, as by default."""
+"""Number of keep-alive messages per lease, which is Zenoh's default."""
 
 WATCHED_LEASE_MS: Final = 100_000
 WATCHED_KEEP_ALIVES: Final = 2
-"""The same for a session at whose process the others look (`StoppedPeers`), in milliseconds.
+"""The same for a session whose process the others check (`StoppedPeers`), in milliseconds.
 
-With a hundred processes, signs of life are what wakes an idle one: at these intervals of 50 s, it
-wakes up 12 times a second.
+Among a hundred processes, keep-alive messages are what wakes an idle one: at these intervals of
+50 s, it wakes up 12 times a second.
 """
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
-"""Intervals at which an endpoint that does not answer is dialled again."""
+"""Intervals at which an endpoint that does not answer is redialled."""
 
 
 class Neighbours(Struct, frozen=True):
-    """The other sessions of a machine that lists them, as one sees them that is about to open.
+    """The sessions of this machine, as a session sees them that is about to open.
 
     Attributes:
-        port: Where it will listen itself.
-        others: Where it dials others.
+        port: The port on which it will listen.
+        others: The ports of the others, which it dials.
     """
 
     port: int
@@ -111,7 +111,7 @@ def session_settings(
         network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
         neighbours: What this machine lists; None if it lists nothing.
-        is_watched: Whether the others look at its process, as far as they are on this machine.
+        is_watched: Whether the others on this machine check its process.
     """
     if network.config_file is not None:
         return {}
