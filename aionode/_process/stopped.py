@@ -71,9 +71,10 @@ class WatchedProcess:
         self._descriptor: int | None = None
         with suppress(OSError):  # some systems do not count it
             self._descriptor = os.open(f"/proc/{pid}/schedstat", os.O_RDONLY)
+            self._ran = os.pread(self._descriptor, 128, 0)
 
     def is_stopped(self) -> bool:
-        """Return whether it is stopped, and has not run since the last look."""
+        """Return whether it is stopped, and has not run since it was last looked at."""
         if self._descriptor is not None:
             try:
                 ran = os.pread(self._descriptor, 128, 0)

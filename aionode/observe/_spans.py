@@ -1,4 +1,4 @@
-"""OpenTelemetry spans for sent messages and for the callbacks that receive them."""
+"""Spans of OpenTelemetry for what is sent and for the callbacks that take it."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import queue
@@ -13,10 +14,14 @@ from pathlib import Path
 
 import pytest
 
+from aionode.engine.transport.zenoh.connections import stopped_peers
 from tests.end_to_end.process import SOON_S, Process, member
-from tests.support.peers import ros_router, ros_session
+from tests.support.peers import quiet_node, ros_router, ros_session
 
 ATTEMPTS = 4
+
+STOPPED_S = 20.0
+"""Within which a stopped process is given up; it takes half of that, on a machine that is idle."""
 
 
 def group(stack: ExitStack, *names: str) -> list[Process]:
@@ -103,6 +108,26 @@ def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
         assert ended_s + two.started_s - killed_s < SOON_S
         two.write("call one 5")
         two.expect("sum 5")
+
+
+@pytest.mark.one_loop
+async def test_a_stopped_process_leaves_the_graph_of_those_that_do_not_look_at_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Beside many others, a process looks at a few of them, and is told by the rest."""
+    monkeypatch.setattr(stopped_peers, "SUCCESSORS", 0)
+    with ExitStack() as stack:
+        frozen, _ = group(stack, "frozen", "looking")
+        async with quiet_node("told") as node:
+
+            def known() -> set[str]:
+                return {other.name for other in node.graph.nodes()}
+
+            async with asyncio.timeout(SOON_S):
+                await node.graph.until(lambda: known() == {"frozen", "looking", "told"})
+            frozen.send(signal.SIGSTOP)
+            async with asyncio.timeout(STOPPED_S):
+                await node.graph.until(lambda: known() == {"looking", "told"})
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Opening a session without free descriptors panics instead of raising."""
+"""A session that gets no descriptor panics, instead of raising."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class ZenohTransport(Transport):
             self._state, network, self._watcher, partial(listed, network.meeting_ports[0])
         )
         self._stale_transports = StaleTransports(self._state, network)
-        self._stopped_peers = StoppedPeers(self._state.connections.kinds)
+        self._stopped_peers = StoppedPeers(self._state)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
         self._presence: socket.socket | None = None  # in the list of this machine's sessions

@@ -13,7 +13,12 @@ from aionode._process.stopped import pid_space
 from aionode.engine.transport import network
 from aionode.engine.transport.network import new_participant
 from aionode.engine.transport.zenoh.connections import stopped_peers
-from aionode.engine.transport.zenoh.connections.stopped_peers import LOOK_S, LOOKS, StoppedPeers
+from aionode.engine.transport.zenoh.connections.stopped_peers import (
+    LOOK_S,
+    LOOKS,
+    SUCCESSORS,
+    StoppedPeers,
+)
 from aionode.testing import ManualClock, SteppedLoop
 
 GIVEN_UP_S = LOOKS * LOOK_S
@@ -27,20 +32,30 @@ class Scene:
         stopped: The processes that are stopped.
         cuts: The peers of each cut.
         watched: The processes that are looked at.
+        said: The keys of what was sent to all others.
+        be_told: Receives what another one has sent to all.
     """
 
     def __init__(self, loop: SteppedLoop, clock: ManualClock) -> None:
-        self.peers: set[str] = set()
+        self.peers: dict[str, None] = {}
         self.stopped: set[int] = set()
         self.cuts: list[set[str]] = []
         self.watched: list[int] = []
+        self.said: list[str] = []
+        self.be_told: Any = None
         self._loop = loop
         self._clock = clock
+
+    def queue(self, handle: Any, _limit: int) -> Any:
+        """Return a queue."""
+        self.be_told = handle
+        return SimpleNamespace(put=handle, clear=lambda: None)
 
     def cut(self, _session: object, zids: set[str]) -> None:
         """Lose peers."""
         self.cuts.append(zids)
-        self.peers -= zids
+        for zid in zids:
+            del self.peers[zid]
 
     def watch(self, pid: int) -> Any:
         """Look at a process."""
@@ -56,7 +71,7 @@ class Scene:
             patched.setattr("os.getpid", lambda: pid)
             patched.setattr(network, "pid_space", lambda: space)
             peer = new_participant()
-        self.peers.add(peer)
+        self.peers[peer] = None
         return peer
 
     async def step(self, seconds: float) -> None:
@@ -73,8 +88,16 @@ async def scene(monkeypatch: pytest.MonkeyPatch) -> Any:
         monkeypatch.setattr(stopped_peers, "start_thread", threading.Thread.run)
         monkeypatch.setattr(stopped_peers, "cut_participants", scene.cut)
         monkeypatch.setattr(stopped_peers, "WatchedProcess", scene.watch)
-        watch = StoppedPeers(scene.peers)
-        session: Any = SimpleNamespace()
+        state: Any = SimpleNamespace(
+            participant=new_participant(),
+            domain_id=7,
+            connections=SimpleNamespace(kinds=scene.peers),
+            control_messages=SimpleNamespace(put=lambda key, _: scene.said.append(key)),
+            queue=scene.queue,
+        )
+        watch = StoppedPeers(state)
+        subscriber = SimpleNamespace(undeclare=lambda: None)
+        session: Any = SimpleNamespace(declare_subscriber=lambda *_, **__: subscriber)
 
         async def start() -> None:
             watch.start(session)
@@ -119,7 +142,7 @@ async def test_a_process_that_returns_and_is_stopped_again_is_given_up_again(
     scene.stopped.add(11)
     await scene.step(GIVEN_UP_S)
     scene.stopped.clear()
-    scene.peers.add(frozen)
+    scene.peers[frozen] = None
     await scene.step(LOOK_S)
 
     scene.stopped.add(11)
@@ -135,7 +158,7 @@ async def test_a_process_that_has_gone_is_looked_at_no_more(
     gone = scene.connect(11, monkeypatch)
     scene.connect(12, monkeypatch)
     await scene.step(LOOK_S)
-    scene.peers.remove(gone)
+    del scene.peers[gone]
 
     await scene.step(LOOK_S)
 
@@ -144,8 +167,90 @@ async def test_a_process_that_has_gone_is_looked_at_no_more(
 
 async def test_sessions_of_other_software_are_not_looked_at(scene: Scene) -> None:
     """The digits of their ids say nothing; their own lease tells."""
-    scene.peers.update({"a1", "f" * 32, "0" * 32})
+    scene.peers.update(dict.fromkeys(("a1", "f" * 32, "0" * 32)))
 
     await scene.step(GIVEN_UP_S)
 
     assert scene.watched == []
+
+
+MANY = range(11, 41)
+
+
+async def test_each_process_looks_at_a_few_others(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those that started next, so that a hundred idle processes look 400 times, not 9900 times."""
+    for pid in MANY:
+        scene.connect(pid, monkeypatch)
+
+    await scene.step(LOOK_S)
+
+    assert sorted(scene.watched) == [*MANY][:SUCCESSORS]
+
+
+async def test_the_one_who_started_last_looks_at_the_first(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each has as many others that look at it."""
+    monkeypatch.setattr(network, "perf_ns", lambda: 1)  # they have started before
+    for pid in MANY:
+        scene.connect(pid, monkeypatch)
+
+    await scene.step(LOOK_S)
+
+    assert len(scene.watched) == SUCCESSORS
+
+
+async def test_whoever_sees_a_stopped_process_tells_all_others(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Most of them look elsewhere."""
+    scene.connect(11, monkeypatch)
+    scene.stopped.add(11)
+
+    await scene.step(LOOK_S)
+
+    assert scene.said == ["@aionode/7/stopped"]
+
+
+async def test_many_processes_that_are_stopped_at_once_are_given_up_at_once(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As with Ctrl-Z in the terminal of a launch: nobody who runs looks at most of them."""
+    frozen = {scene.connect(pid, monkeypatch) for pid in MANY}
+    scene.stopped.update(MANY)
+
+    await scene.step(GIVEN_UP_S)
+
+    assert scene.cuts == [frozen]
+
+
+async def test_who_is_told_gives_up_the_stopped_one_like_the_one_who_tells(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The others have as long to notice it as one that looks at it."""
+    *_, frozen = [scene.connect(pid, monkeypatch) for pid in MANY]
+    scene.stopped.add(MANY[-1])
+    await scene.step(LOOK_S)
+    assert MANY[-1] not in scene.watched
+
+    scene.be_told(None)
+    await scene.step(GIVEN_UP_S - LOOK_S)
+
+    assert scene.cuts == [{frozen}]
+
+
+async def test_after_a_while_each_looks_at_a_few_others_again(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever sends that message could otherwise keep all of them busy."""
+    for pid in MANY:
+        scene.connect(pid, monkeypatch)
+    await scene.step(LOOK_S)
+
+    scene.be_told(None)
+    assert len(scene.watched) == len(MANY)
+    await scene.step(GIVEN_UP_S + LOOK_S)
+
+    assert len(scene.watched) == SUCCESSORS

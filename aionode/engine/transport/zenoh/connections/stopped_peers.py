@@ -1,85 +1,119 @@
 """Gives up connections to processes of this machine that a signal or a debugger has stopped.
 
-Zenoh would notice by its lease: each process regularly tells every other one that it is alive,
-which is what wakes an idle process among many. The system knows which processes are stopped, so
-each process checks the others without waking them, and sessions that can be checked have a long
-lease. Peers that cannot check, such as nodes of ROS 2 and those in other containers, notice a
-stopped process when that lease ends.
+Zenoh would notice by its lease: each process tells each other one, again and again, that it is
+alive. With many processes, that is what wakes an idle one. The system knows which processes are
+stopped, so each process looks at the others, which wakes none of them, and sessions that can be
+looked at have a long lease. Peers that cannot look, such as nodes of ROS 2 and those in other
+containers, notice a stopped process by that lease.
 
-A process that waits a long time for a processor is not stopped, and is not given up.
+Each process looks at a few others only, so that a hundred do not look at a hundred each. Whoever
+sees that one is stopped tells everyone, and then everyone looks at all peers for a while.
+
+A process that waits long for a processor is not stopped, and is not given up.
 """
 
 from __future__ import annotations
 
 import logging
 import threading
+from bisect import bisect
 from typing import TYPE_CHECKING, Final
+
+import zenoh
 
 from aionode._process.later import Later
 from aionode._process.stopped import WatchedProcess
 from aionode.engine.transport.network import pid_of
 from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh.connections.handlers import direct, translated
 from aionode.engine.transport.zenoh.connections.sockets import cut_participants
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Set as AbstractSet
 
-    import zenoh
+    from aionode.engine.transport.zenoh._session_state import SessionState
 
 __all__ = ["StoppedPeers"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LOOK_S: Final = 2.0
-"""The interval of checks, in seconds."""
+"""The interval of looks, in seconds."""
 
 LOOKS: Final = 4
-"""Number of consecutive checks that must find a process stopped: it is given up after 6 to 10 s, as
-with a lease of 10 s. Checks are counted, not seconds, as this process may have been stopped too."""
+"""How often in a row a process must be seen stopped: it is given up after 6 to 10 s, as by a lease
+of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
+
+SUCCESSORS: Final = 4
+"""Number of peers that a process always looks at: the next ones in the order of their ids, so that
+as many others look at it. One of them is enough, but some may be stopped with it."""
 
 
 class StoppedPeers:
     """Gives up the stopped processes among the peers of a session; belongs to the event loop.
 
     Args:
-        participants: The connected sessions.
+        state: The state of the session.
     """
 
-    def __init__(self, participants: Collection[str]) -> None:
-        self._participants = participants
+    def __init__(self, state: SessionState) -> None:
+        self._state = state
         self._session: zenoh.Session | None = None
-        # The peers, and the processes of those that can be checked.
-        self._processes: dict[str, WatchedProcess | None] = {}
+        self._key = f"@aionode/{state.domain_id}/stopped"
+        self._told = state.queue(self._be_told, 1)
+        self._subscriber: zenoh.Subscriber[None] | None = None
+        # The processes of all peers, as far as they can be looked at.
+        self._pids: dict[str, int | None] = {}
+        self._successors: set[str] = set()
+        # Those that are looked at: the successors, or all of them.
+        self._processes: dict[str, WatchedProcess] = {}
+        self._looks_at_all = 0  # how many more times to look at all of them
         self._looks: dict[str, int] = {}  # how often each was seen stopped, in a row
         self._later = Later()
 
     def start(self, session: zenoh.Session) -> None:
-        """Check the peers of a session from now on."""
+        """Look at the peers of a session from now on."""
         self._session = session
+        with translated(self._key):
+            self._subscriber = session.declare_subscriber(
+                self._key, direct(self._told.put), allowed_origin=zenoh.Locality.REMOTE
+            )
         self._later.call(LOOK_S, self._look)
 
     def stop(self) -> None:
-        """Stop checking."""
+        """Stop looking."""
         self._later.cancel()
         self._session = None
-        for process in self._processes.values():
-            if process is not None:
-                process.close()
-        self._processes.clear()
+        subscriber, self._subscriber = self._subscriber, None
+        if subscriber is not None:
+            subscriber.undeclare()
+        self._told.clear()
+        self._looks_at_all = 0
+        self._watch(set())
+        self._pids.clear()
+        self._successors.clear()
         self._looks.clear()
+
+    def _be_told(self, _: zenoh.Sample) -> None:
+        """Look at all peers now and for a while, as another process has seen a stopped one."""
+        is_first, self._looks_at_all = not self._looks_at_all, LOOKS
+        if is_first:
+            self._look()
 
     def _look(self) -> None:
         session = self._session
         if session is None:
             return
         self._later.call(LOOK_S, self._look)
-        self._meet()
-        looks = self._looks
-        self._looks = {
-            zid: looks.get(zid, 0) + 1
-            for zid, process in self._processes.items()
-            if process is not None and process.is_stopped()
-        }
+        stopped = self._stopped()
+        if stopped & self._successors:
+            # Not a token: declaring one may block, as the one that is stopped reads nothing.
+            self._state.control_messages.put(self._key, b"")
+            if not self._looks_at_all:
+                self._looks_at_all = LOOKS
+                stopped = self._stopped()
+        self._looks_at_all = LOOKS if stopped else max(self._looks_at_all - 1, 0)
+        self._looks = {zid: self._looks.get(zid, 0) + 1 for zid in stopped}
         lost = {zid for zid, count in self._looks.items() if count == LOOKS}
         if lost:
             pids = sorted(filter(None, map(pid_of, lost)))
@@ -94,14 +128,26 @@ class StoppedPeers:
                 )
             )
 
-    def _meet(self) -> None:
-        """Check new peers from now on, and no longer those that have gone."""
+    def _stopped(self) -> set[str]:
+        """Return those that are stopped, of the successors or of all peers."""
+        peers = self._state.connections.kinds.keys()
+        if peers != self._pids.keys():
+            known = self._pids
+            self._pids = {zid: known[zid] if zid in known else pid_of(zid) for zid in peers}
+            order = sorted(zid for zid, pid in self._pids.items() if pid is not None)
+            first = bisect(order, self._state.participant)
+            self._successors = set((order[first:] + order[:first])[:SUCCESSORS])
+        self._watch(self._pids.keys() if self._looks_at_all else self._successors)
+        return {zid for zid, process in self._processes.items() if process.is_stopped()}
+
+    def _watch(self, zids: AbstractSet[str]) -> None:
+        """Look at these peers from now on, and no longer at others."""
         processes = self._processes
-        for zid in processes.keys() - self._participants:
-            process = processes.pop(zid)
-            if process is not None:
-                process.close()
-        for zid in self._participants:
-            if zid not in processes:
-                pid = pid_of(zid)
-                processes[zid] = None if pid is None else WatchedProcess(pid)
+        if processes.keys() == zids:
+            return
+        for zid in processes.keys() - zids:
+            processes.pop(zid).close()
+        for zid in zids - processes.keys():
+            pid = self._pids[zid]
+            if pid is not None:
+                processes[zid] = WatchedProcess(pid)
