@@ -6,7 +6,7 @@ from copy import copy
 from errno import ENAMETOOLONG
 from itertools import islice
 from pathlib import Path
-from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
+from time import sleep  # noqa: TID251  # for no time: it only releases the interpreter
 from typing import TYPE_CHECKING, Any, Final, Generic, Self, TypeVar
 
 from aionode._process.concurrency import run_in_thread

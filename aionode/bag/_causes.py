@@ -24,7 +24,7 @@ REMEDY = "record with `aionode bag record --causes`, or Recorder(causes=True)"
 def why(bag: Bag, name: str, at: Time | Duration | None = None) -> Why:
     """Return what led to the last message of a topic, from the causes in a bag.
 
-    It is what `observe.why` had answered at that time; ages count back from there.
+    It is what `observe.why` would have answered at that time; ages count back from there.
 
     Args:
         bag: The bag, whose recorder has recorded causes.
@@ -36,7 +36,7 @@ def why(bag: Bag, name: str, at: Time | Duration | None = None) -> Why:
     """
     path = str(bag.path)
     if CAUSES not in bag.topics or not bag.topics[CAUSES].message_count:
-        raise BagError(path, f"it has no causes: nothing of {CAUSES} is in it", REMEDY)
+        raise BagError(path, f"it has no causes: {CAUSES} has no messages in it", REMEDY)
     at_ns = None
     if at is not None:
         at_ns = at.nanoseconds + (bag.start_ns if isinstance(at, Duration) else 0)
@@ -50,7 +50,7 @@ def why(bag: Bag, name: str, at: Time | Duration | None = None) -> Why:
             raise BagError(
                 path,
                 f"the message of {CAUSES} at {last_ns / 1e9:.9f} cannot be read",
-                "it is damaged, or of another version of aionode: use the one that recorded it",
+                "it is damaged, or another version of aionode has recorded it: use that version",
             )
     return causes.why(name, at_ns)
 

@@ -41,7 +41,7 @@ UNKNOWN: Final = 0x80
 """The first opcode of the range that MCAP reserves for programs; all other readers skip it."""
 
 QUIET_SEC: Final = 5.0
-"""How long nothing must have been written to a file that a program without our lock left open."""
+"""How long an open file of a program without our lock must be unchanged before it is repaired."""
 
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 
@@ -67,8 +67,8 @@ def check(path: str | PathLike[str]) -> list[Checked]:
 
     All messages are read. A damaged MCAP file is truncated after its last complete chunk and gets a
     new summary; earlier damaged chunks are turned into records that readers skip. Other files are
-    not changed. A bag that is being recorded is refused, also while its topics are silent. What the
-    metadata counted and the files no longer have is in `Bag.missing` from then on.
+    not changed. A bag that is being recorded is refused, even while its topics are silent. From
+    then on, `Bag.missing` has the messages that the metadata counted and the files no longer have.
 
     Args:
         path: A folder, or a single file.
@@ -157,7 +157,7 @@ def is_closed(file: Path) -> bool:
 
 
 def is_of_another_program(file: Path) -> bool:
-    """Return whether a file says that a program wrote it that does not know of our lock."""
+    """Return whether a file names a writer that does not know our lock."""
     with file.open("rb") as stream:
         begin = stream.read(LONGEST_HEADER)
     is_mcap = begin.startswith(MAGIC) and not has_hardly_begun(file)
@@ -165,7 +165,7 @@ def is_of_another_program(file: Path) -> bool:
 
 
 def expect_quiet(file: Path) -> None:
-    """Raise the error for a file whose recorder may be alive, as nobody can tell from a lock."""
+    """Raise an error for a file without a lock whose recorder may be alive."""
     now = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
     if abs(now - file.stat().st_mtime_ns) / 1e9 < QUIET_SEC:
         raise BagError(
@@ -392,8 +392,8 @@ class Scan:
 def reindex(path: str | PathLike[str]) -> None:
     """Rebuild the ``metadata.yaml`` of a bag from its files.
 
-    The custom data are kept if the old file is readable; what it counted and the files no longer
-    have is in `Bag.missing` from then on.
+    The custom data are kept if the old file is readable. From then on, `Bag.missing` has the
+    messages that it counted and the files no longer have.
 
     Args:
         path: The folder.
@@ -440,7 +440,7 @@ def metadata_in(folder: Path) -> dict[str, Any]:
 
 
 def custom_data_of(folder: Path, sources: list[Source], before: dict[str, Any]) -> dict[str, str]:
-    """Return the custom data of a folder, with what its metadata count and its files lack."""
+    """Return the custom data of a folder, with the messages that only its metadata count."""
     told = before.get("custom_data")
     custom = {str(key): str(value) for key, value in told.items()} if isinstance(told, dict) else {}
     missing = Bag(folder, sources, before | {"custom_data": custom}).missing

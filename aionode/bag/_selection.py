@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["ACTION_TOPICS", "CAUSES", "EVENT_SUFFIX", "Selection", "kind_of"]
 
 CAUSES: Final = "/_aionode/causes"
-"""The topic of the causes that a recorder has asked for: it is in bags only, and is not played."""
+"""The topic of the causes that a recorder has queried: it exists only in bags, and is not played.
+"""
 
 EVENT_SUFFIX: Final = "/_service_event"
 ACTION: Final = "/_action/"

@@ -13,7 +13,7 @@ class RefusedError(AionodeError, PermissionError):
     Attributes:
         subject: What the client asked for, such as ``publish to /cmd_vel``.
         reason: Why it is refused, and what would be allowed.
-        code: The reason as a word for programs: ``not_allowed`` by the policy, ``unauthorized``
+        code: The reason as a code for programs: ``not_allowed`` by the policy, ``unauthorized``
             without a valid token or from a page that may not connect, ``out_of_limits`` for a value
             outside the limits of its field, ``too_large``, ``too_fast``, ``not_confirmed`` by a
             person, ``held`` by another client that commands the topic, ``too_many`` of what is
@@ -48,7 +48,7 @@ class ToolError(AionodeError, RuntimeError):
     Attributes:
         subject: What it was called with.
         reason: Why it cannot, and what to do.
-        code: The reason as a word for programs: ``not_found``, ``timeout``, or ``failed``.
+        code: The reason as a code for programs: ``not_found``, ``timeout``, or ``failed``.
     """
 
     def __init__(self, subject: str, reason: str, code: str = "failed") -> None:

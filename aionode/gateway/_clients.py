@@ -68,7 +68,7 @@ class Clients:
 
     Attributes:
         node: The node.
-        motions: What assistants among them move.
+        motions: The motions of the assistants among them.
     """
 
     def __init__(self, node: Node, policy: Policy, ask: Ask | None = None) -> None:

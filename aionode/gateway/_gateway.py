@@ -292,7 +292,7 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     async def receive_paced() -> Any:
         nonlocal seen
         while seen < session.rights.refused - session.rights.refused_cheaply:
-            await wait_for(refusals, "frames in vain")
+            await wait_for(refusals, "refused frames")
             seen += 1
         message = await receive()
         if message["type"] == "websocket.receive":

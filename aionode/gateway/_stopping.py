@@ -28,33 +28,33 @@ ENDING_SEC: Final = 1.0
 """The longest time for motion to end that was stopped, in seconds."""
 
 ANSWER_SEC: Final = 2 * ENDING_SEC
-"""The longest wait for another gateway, in seconds."""
+"""How long to wait for another gateway, in seconds."""
 
 MOST_GATEWAYS: Final = 100
 
 MOST_NAME: Final = 200
-"""The longest name of a client that is looked for, in characters."""
+"""Maximum length of a client's name in a request, in characters."""
 
 MOST_TOLD: Final = 100
-"""The most motions that are taken from the answer of another gateway, of each kind."""
+"""Maximum number of motions of each kind accepted from another gateway's answer."""
 
 MOST_TEXT: Final = 300
-"""The longest name that is taken from such an answer, in characters."""
+"""Maximum length of a name in such an answer, in characters."""
 
 
 class StopMotion(ServiceType, typename="aionode_gateway/srv/StopMotion"):
-    """A request to a gateway of the same domain to end what a client moves.
+    """A request to a gateway of the same domain to end a client's motion.
 
     Everyone in the domain can publish commands, so everyone may ask for their end.
     """
 
     class Request(Message):
-        """The name of the client, by the policy."""
+        """The name of the client under the policy."""
 
         identity: str = ""
 
     class Response(Message):
-        """What was ended, and what still moves, with the names of the clients that move it."""
+        """What was ended and what still moves, with the names of the clients that move it."""
 
         ended: Sequence[str] = DEFAULT
         ended_of: Sequence[str] = DEFAULT
@@ -63,7 +63,7 @@ class StopMotion(ServiceType, typename="aionode_gateway/srv/StopMotion"):
 
 
 class Moving(NamedTuple):
-    """A topic or an action, and the name of the client that moves something by it."""
+    """A topic or action that moves something, and the name of its client."""
 
     name: str
     who: str
@@ -84,8 +84,8 @@ class Stopping:
 
     Args:
         robot: The robot, as the clients of this gateway share it.
-        motions: What assistants among them move.
-        sessions: The sessions of all of them, which change.
+        motions: The motions of the assistants among them.
+        sessions: The current sessions of all of them.
     """
 
     def __init__(self, robot: Robot, motions: Motions, sessions: Collection[Session]) -> None:
@@ -98,14 +98,14 @@ class Stopping:
         )
 
     def close(self) -> None:
-        """Offer it no longer."""
+        """Withdraw the service."""
         self._service.destroy()
 
     async def everywhere(self, rights: Rights) -> Stopped:
-        """End what a client moves in the whole domain, and what others move as far as it may.
+        """End a client's motion in the whole domain, and that of others as far as it may.
 
-        A gateway that does not answer in time is named among what still moves, and so is how many
-        were not asked.
+        A gateway that does not answer in time is listed as still moving, and so is the number of
+        gateways that were not asked.
         """
         others = [
             endpoint
@@ -123,11 +123,11 @@ class Stopping:
         return Stopped(ended, moving)
 
     async def here(self, rights: Rights) -> Stopped:
-        """End what a client moves by this gateway, and what others move as far as it may."""
+        """End a client's motion through this gateway, and that of others as far as it may."""
         ended: set[Moving] = set()
 
         def may_end(name: str, type_name: str, owner: Identity) -> bool:
-            """Return whether it may: its own motion, or by the policy's word; and note it."""
+            """Return whether it may end a motion, its own or by a rule, and record that."""
             own = owner.name == rights.identity.name
             allowed = own or rights.decision("stop", name, type_name).allowed
             if allowed:
@@ -158,7 +158,7 @@ class Stopping:
         return Stopped(ended, self._moving())
 
     def _moving(self) -> set[Moving]:
-        """Return what clients of this gateway move now."""
+        """Return the current motions of this gateway's clients."""
         holders = self._robot.commands.holders()
         moving = {Moving(topic, holder.identity.name) for topic, holder in holders.items()}
         return moving | {
@@ -169,7 +169,7 @@ class Stopping:
         }
 
     async def _ask(self, other: EndpointInfo, rights: Rights) -> Stopped:
-        """Have another gateway end it."""
+        """Ask another gateway to end a client's motion."""
         client = self._node.create_client(StopMotion, other.name)
         try:
             request = StopMotion.Request(identity=rights.identity.name)
@@ -191,7 +191,7 @@ class Stopping:
     async def _serve(
         self, request: StopMotion.Request, response: StopMotion.Response
     ) -> StopMotion.Response:
-        """End what a client of another gateway moves by this one."""
+        """End the motion of another gateway's client through this one."""
         name = request.identity[:MOST_NAME]
         identity = self._robot.policy.named(name) or Identity(name)
         stopped = await self.here(Rights(self._robot, identity, "stop"))
@@ -207,13 +207,13 @@ class Stopping:
 
 
 def told(names: Iterable[str], clients: Iterable[str]) -> set[Moving]:
-    """Return what another gateway names, which anyone can pose as: bounded in number and length."""
+    """Return the motions in another gateway's answer, limited, as anyone can pose as a gateway."""
     pairs = islice(zip(names, clients, strict=False), MOST_TOLD)
     return {Moving(name[:MOST_TEXT], who[:MOST_TEXT]) for name, who in pairs}
 
 
 async def cancelled(handle: Any) -> Any:
-    """Cancel a goal, and return how it has ended; None if it has not within a second."""
+    """Cancel a goal, and return its result; None if it does not end within a second."""
     with suppress(TimeoutError, AionodeError):
         async with asyncio.timeout(ENDING_SEC):
             await handle.cancel()

@@ -117,7 +117,7 @@ class JointStatePublisher(Node):
             CommandError: It has another type than the default.
         """
         if not self.has_parameter(name):
-            is_dynamic = default == []  # nothing says of which type its elements are
+            is_dynamic = default == []  # the type of its elements is unknown
             descriptor = ParameterDescriptor(dynamic_typing=is_dynamic)
             return self.declare_parameter(name, default, descriptor).value
         value = self.get_parameter(name).value
@@ -160,7 +160,7 @@ class JointStatePublisher(Node):
         """Return the value of a parameter as a number.
 
         Raises:
-            CommandError: It is none.
+            CommandError: It is not a number.
         """
         if type(value) not in (int, float) or not math.isfinite(value):
             raise CommandError(f"{name} is {value!r}; use a number")
@@ -267,10 +267,10 @@ def part_of(part: str, state: State | None, mimic: Mimic) -> float:
 
 
 def main() -> None:
-    """Run the node until Ctrl-C, also in the place of the one with a window."""
+    """Run the node until Ctrl-C, also in place of the one with a window."""
     if sys.argv[0] == "joint_state_publisher_gui":
         get_logger("joint_state_publisher").warning(
-            "the window with the sliders is not here: joints stand at their zeros, or where the "
+            "the window with the sliders is not available: joints stay at zero, or where the "
             "topics of the parameter 'source_list' put them"
         )
     parser = argparse.ArgumentParser(prog="joint_state_publisher")

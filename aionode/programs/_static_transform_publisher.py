@@ -56,7 +56,7 @@ DEFAULTS: Final[dict[str, float | str]] = {
     "frame_id": "/frame",
     "child_frame_id": "/child",
 }
-"""The parameters, which say the transform of a node in a container."""
+"""The parameters, which define the transform of a node in a container."""
 
 LENGTH_TOLERANCE: Final = 0.01
 """Tolerance for the squared length of a quaternion; tf2 ignores others."""
@@ -144,10 +144,10 @@ def number(name: str, text: str) -> float:
 
 
 class StaticTransformPublisher(Node):
-    """Publishes one transform on /tf_static; its parameters say which, and are read-only.
+    """Publishes one transform on /tf_static, defined by its read-only parameters.
 
     Args:
-        given: The transform; the parameters say it if left out.
+        given: The transform; by default that of the parameters.
 
     Raises:
         CommandError: Parent and child are the same frame.
@@ -182,7 +182,7 @@ class StaticTransformPublisher(Node):
         if abs(length**2 - 1.0) > LENGTH_TOLERANCE:
             log.warning(
                 f"The quaternion has the length {length:g}; listeners ignore this transform, as "
-                "they take rotations of length 1 only"
+                "they accept only rotations of length 1"
             )
         self._publish(given)
         translation = ", ".join(f"'{value:f}'" for value in given.translation)

@@ -20,7 +20,7 @@ from aionode.programs._wall_timer import create_wall_timer
 __all__ = ["Keys", "Teleop", "main", "terminal"]
 
 HELP: Final = """
-Keys move the robot; each goes on until the next one. It works best with a US keyboard layout.
+Keys move the robot; each is in effect until the next one. A US keyboard layout works best.
 ---------------------------
 Moving around:
    u    i    o

@@ -169,7 +169,7 @@ class TwistMux(Node):
             for source in self.locks
         }
         values["current priority"] = str(lowest)
-        # Nothing measures these two, in the original neither.
+        # Nothing measures these two; neither does the original.
         values["loop time in [sec]"] = values["data age in [sec]"] = "0"
         values["current source"] = "none" if leader is None else leader.name
         status = DiagnosticStatus(

@@ -100,7 +100,7 @@ class NodeMember(Member):
         finally:
             context._usage = before
         if not isinstance(node, Node):
-            raise TypeError(f"{self.name}: {self._make_node!r} returned {node!r}, which is no node")
+            raise TypeError(f"{self.name}: {self._make_node!r} returned {node!r}, not a node")
         return node
 
 

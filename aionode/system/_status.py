@@ -105,7 +105,7 @@ def shell_status(code: int | None) -> int:
 def end_text(code: int | None) -> str:
     """Describe how a process ended, given its exit code, or None if unknown."""
     if code is None:
-        return "ended; how, only the guardian knew"
+        return "ended; its exit status was lost with the guardian"
     if code >= 0:
         return f"ended with exit status {code}"
     try:

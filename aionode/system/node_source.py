@@ -68,14 +68,14 @@ def missing(error: ImportError, spec: str) -> str:
     """Describe what a module did not find, and what to do about it."""
     name = error.name or ""
     if name.startswith("aionode.interfaces."):
-        return f"what is not there: {error}"
+        return f"something that does not exist: {error}"
     types = interface_names(name.partition(".")[0])
     if types:
         package, kind, cls = types[0].split("/")
         line = f"from aionode.interfaces.{package}.{kind} import {cls}"
         return f"{name}, whose types are for nodes of aionode: `{line}`"
     name += ", which is not installed"
-    return f"{name}; a program of ROS 2 runs by `aionode run --rclpy {spec}`"
+    return f"{name}; run a program of ROS 2 with `aionode run --rclpy {spec}`"
 
 
 def node_maker(spec: str) -> Callable[[], Any]:

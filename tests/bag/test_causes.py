@@ -278,7 +278,7 @@ def test_a_damaged_channel_is_one_error(tmp_path: Path, text: str) -> None:
         bag.open(written(tmp_path / "run", text)) as run,
         pytest.raises(
             BagError,
-            match=r"at 1150\.000000000 cannot be read; it is damaged, or of another version",
+            match=r"at 1150\.000000000 cannot be read; it is damaged, or another version",
         ),
     ):
         bag.why(run, "/drive")

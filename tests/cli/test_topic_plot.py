@@ -103,7 +103,7 @@ async def test_each_value_is_a_record_for_programs(
         (".data", "give topic and field"),
         ("/cmd_vel.", "give topic and field"),
         ("/cmd_vel.linear.w", "no 'w' in it; geometry_msgs/msg/Vector3 has x, y, z"),
-        ("/cmd_vel.linear", "is no number"),
+        ("/cmd_vel.linear", "is not a number"),
     ],
 )
 @pytest.mark.usefixtures("wheels")
@@ -155,7 +155,7 @@ async def test_an_array_is_no_number(
         await publisher.wait_for_subscribers(1)
         publisher.publish(LaserScan(ranges=[1.0, 2.0]))
 
-    with pytest.raises(CommandError, match=re.escape("float32[] is no number; name a number")):
+    with pytest.raises(CommandError, match=re.escape("float32[] is not a number; name a number")):
         await asyncio.gather(plot(tool, ["/scan.ranges"], output=screen.output), measure())
     assert screen.errors == ""  # one has arrived
 

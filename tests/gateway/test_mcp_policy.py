@@ -31,7 +31,7 @@ class Rule(NamedTuple):
         arguments: Its arguments.
         allows: The rules by which it is allowed.
         refuses: The rules by which it is refused.
-        code: The reason as a word for programs.
+        code: The reason as a code for programs.
     """
 
     tool: str

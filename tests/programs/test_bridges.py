@@ -53,7 +53,7 @@ async def test_without_a_policy_other_hosts_are_not_served(
     gateway = gateway_of(start, BOTH[0], address=EVERYWHERE)
 
     assert gateway.host == "127.0.0.1"
-    assert "the parameter 'policy' names the file of one" in capfd.readouterr().err
+    assert "name the file of one by the parameter 'policy'" in capfd.readouterr().err
 
 
 async def test_a_policy_that_knows_its_clients_opens_it(start: Start, tmp_path: Path) -> None:

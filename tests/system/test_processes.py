@@ -249,7 +249,8 @@ async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(syste
         os.kill(pid or 0, signal.SIGTERM)
         await until(lambda: system.status()["brief"].state == "failed")
 
-        assert system.status()["brief"].error == "ended; how, only the guardian knew"
+        error = system.status()["brief"].error
+        assert error == "ended; its exit status was lost with the guardian"
 
 
 async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_meanwhile(

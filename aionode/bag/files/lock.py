@@ -1,8 +1,8 @@
 """The lock on the folder of a bag, which keeps others from changing what is being recorded.
 
-A writer holds it until its bag is closed. The kernel releases it when its process ends, however it
-does; a process that is merely stopped keeps it. So a bag that is not closed can be repaired at once
-if nobody holds its lock, and not at all otherwise, however silent its topics are.
+A writer holds it until its bag is closed. The kernel releases it when its process ends in any way;
+a process that is merely stopped keeps it. So a bag that was not closed can be repaired at once if
+nobody holds its lock, and not at all otherwise, however silent its topics are.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LOCKS: Final = Path("/proc/locks")
 class FolderLock:
     """An exclusive lock on a folder; ``with`` releases it.
 
-    Forked children let go of it: it would outlive the process that writes.
+    Forked children release it, as it would otherwise outlive the process that writes.
 
     Args:
         folder: The folder.
@@ -76,7 +76,7 @@ class FolderLock:
         self.release()
 
     def release(self) -> None:
-        """Let others have it. Releasing again has no effect."""
+        """Release it. Releasing again has no effect."""
         self.is_held = False
         if self._close is not None:
             self._close()

@@ -157,14 +157,14 @@ def read_metadata(folder: Path) -> dict[str, Any]:
 
 
 def start_in(metadata: Mapping[str, Any]) -> int:
-    """Return when a bag begins as its metadata say, in nanoseconds; `NEVER_NS` if they do not."""
+    """Return the start time in a bag's metadata, in nanoseconds; `NEVER_NS` if there is none."""
     told = metadata.get("starting_time")
     start = told.get("nanoseconds_since_epoch") if isinstance(told, dict) else None
     return start if isinstance(start, int) else NEVER_NS
 
 
 def counts_in(metadata: Mapping[str, Any]) -> dict[str, int]:
-    """Return the number of messages of each topic as a bag's metadata say, as far as they do."""
+    """Return the numbers of messages in a bag's metadata, for the topics that have one."""
     listed = metadata.get("topics_with_message_count")
     counts: dict[str, int] = {}
     for entry in listed if isinstance(listed, list) else ():

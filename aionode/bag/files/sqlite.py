@@ -143,7 +143,7 @@ class SqliteSource:
             text += f"WHERE timestamp >= {first_ns} AND timestamp <= {last_ns} "
         try:
             if self._is_whole and (bad := self._base.execute(BROKEN).fetchone()):
-                wrong = TypeError("its time is no number")
+                wrong = TypeError("its time is not a number")
                 problems.append(damaged(self.path, wrong, f"the message {bad[0]}"))
             with closing(self._base.execute(f"{text}ORDER BY {order}")) as rows:
                 for row, number, time_ns, data in rows:
@@ -157,7 +157,7 @@ class SqliteSource:
                     except DAMAGE as error:
                         problems.append(damaged(self.path, error, f"the message {row}"))
                         continue
-                    time_ns = max(time_ns, 0)  # noqa: PLW2901  # a time is one since 1970
+                    time_ns = max(time_ns, 0)  # noqa: PLW2901  # times count from 1970
                     yield Record(info, time_ns, time_ns, 0, raw)
         except (sqlite3.Error, *DAMAGE) as error:
             problems.append(damaged(self.path, error))

@@ -151,7 +151,7 @@ def whole_summary(
         damage: Exceptions for a damaged chunk, whose messages are not counted then.
 
     Raises:
-        McapError: the file is damaged, or was not closed; so are errors of the libraries.
+        McapError: the file is damaged or was not closed; errors of the libraries also mean that.
     """
     found = read_summary(file)
     told = found.statistics
@@ -169,7 +169,7 @@ def whole_summary(
 def summary_of_content(
     file: IO[bytes], damage: tuple[type[Exception], ...]
 ) -> tuple[Summary, Statistics]:
-    """Return what the summary of a file should have, from all its records."""
+    """Return what the summary of a file should contain, from all its records."""
     found = Summary(None, {}, {}, [])
     counts: Counter[int] = Counter()
     first_ns, last_ns = 1 << 64, 0

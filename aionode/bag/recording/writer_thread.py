@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections import deque
-from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
+from time import sleep  # noqa: TID251  # for no time: it only releases the interpreter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from aionode.bag._writer import BagWriter

@@ -35,7 +35,7 @@ __all__ = ["draw", "graph_command"]
 FORMS: Final = {"text": to_text, "dot": to_dot, "mermaid": to_mermaid, "svg": to_svg}
 
 LARGEST: Final = 64 * 2**20
-"""The largest saved picture that is read, in bytes."""
+"""Maximum size of a saved picture, in bytes."""
 
 
 @click.command("graph")
@@ -57,9 +57,9 @@ LARGEST: Final = 64 * 2**20
 def graph_command(json: bool, **options: Any) -> None:
     """Draw nodes and the topics, services and actions that they share.
 
-    NAMES restrict it to those nodes, topics, services and actions, and what they are connected
-    with; a name that ends in a slash stands for all below it. What does not match is red, with its
-    reason. The exit status is 1 if something does not match.
+    NAMES restrict it to those nodes, topics, services and actions, and to what they are connected
+    with; a name that ends in a slash stands for all below it. Mismatches are red, with their
+    reasons. The exit status is 1 if something does not match.
     """
     run_verb(lambda node, output: draw(node, output=output, **options), json=json)
 
@@ -84,10 +84,10 @@ async def draw(
         output: Where to print.
         form: ``text``, ``dot``, ``mermaid`` or ``svg``; by default text.
         everything: Whether infrastructure and hidden nodes are drawn.
-        measure: Whether to ask the nodes how often something comes.
-        duration: For how long, in seconds.
-        save: A file in which the graph is saved.
-        since: A file with the graph of another moment, to compare.
+        measure: Whether to ask the nodes for rates.
+        duration: How long to measure, in seconds.
+        save: The file to which the graph is saved.
+        since: A file with an earlier graph, for comparison.
 
     Raises:
         CommandError: a file cannot be read or written, or nothing has one of the names.

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 __all__ = ["mcp_command", "policy_of", "serve", "try_tool", "words_of"]
 
 VARIABLES: Final = {"domain": "ROS_DOMAIN_ID", "connect": "ZENOH_CONFIG_OVERRIDE"}
-"""The variables that options stand for: desktop programs pass none of them on."""
+"""The variables that the options set, as desktop programs pass none of them on."""
 
 
 def robot_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that say which robot, and what may be done with it."""
+    """Add the options that name the robot, and say what may be done with it."""
     options = [
         interfaces_option,
         click.option(
@@ -71,7 +71,7 @@ def robot_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def set_variable(ctx: click.Context, param: click.Parameter, value: Any) -> None:
-    """Set the variable of the environment that an option stands for."""
+    """Set the environment variable of an option."""
     if value is None:
         return
     name = VARIABLES[str(param.name)]
@@ -148,7 +148,7 @@ def checked(ctx: click.Context, options: dict[str, Any]) -> dict[str, Any]:
 
 
 def policy_of(path: str | None, *, allow_write: bool) -> Policy:
-    """Return the policy of a file, or that without one.
+    """Return the policy in a file, or the default policy without one.
 
     Raises:
         PolicyFileError: the file cannot be read, or is not a policy.
@@ -242,7 +242,7 @@ def words_of(arguments: Sequence[str]) -> dict[str, Any]:
 
 
 def settings(host: str, words: Sequence[str]) -> str:
-    """Return the settings of a program, or of all, with the command as it was given.
+    """Return the settings of a program, or of all, for the command that is running.
 
     Args:
         host: The name of the program, or ``all``.
@@ -276,7 +276,7 @@ def kept(words: Sequence[str]) -> list[str]:
 
 
 def absolute(words: Sequence[str]) -> list[str]:
-    """Return arguments with whole paths: the program that starts the command has another folder."""
+    """Return arguments with absolute paths, as the program that uses them runs elsewhere."""
     paths, whole = ("--policy", "--bags", "--interfaces"), []
     before = ""
     for word in words:

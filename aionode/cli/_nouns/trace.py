@@ -43,7 +43,7 @@ async def record(node: Node, path: Path, *, output: Output, duration: float = 10
         node: The command's node.
         path: Where to write it.
         output: Where to print.
-        duration: For how long, in seconds.
+        duration: How long to record, in seconds.
 
     Raises:
         CommandError: the file cannot be written.

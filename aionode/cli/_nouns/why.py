@@ -58,7 +58,7 @@ def why_command(
 
 
 def explain_recorded(path: str, name: str, at_sec: float | None, output: Output) -> int:
-    """Print what led to the latest thing of a name in a bag; return the same as `explain`.
+    """Print what led to the latest item of a name in a bag; return the same as `explain`.
 
     Raises:
         CommandError: there is no such bag.
@@ -72,7 +72,7 @@ def explain_recorded(path: str, name: str, at_sec: float | None, output: Output)
 
 
 async def explain(node: Node, name: str, *, output: Output, timeout: float = 0.5) -> int:
-    """Print what led to the latest thing of a name; return 1 if nothing is known of it, else 0.
+    """Print what led to the latest item of a name; return 1 if nothing is known of it, else 0.
 
     Args:
         node: The command's node.

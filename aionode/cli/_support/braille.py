@@ -1,4 +1,4 @@
-"""Lines of numbers over time in characters: each of Braille has two by four dots."""
+"""Draws numbers over time with Braille characters, each of which has two by four dots."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 __all__ = ["COLOURS", "Line", "chart"]
 
 MOST_POINTS: Final = 10_000
-"""The most points of a line that are kept; then each four become their lowest and highest."""
+"""Maximum number of points of a line; beyond it, every four become their lowest and highest."""
 
 COLOURS: Final = ("blue", "red", "green", "yellow", "magenta", "cyan")
-"""The colours of lines, in their order; rich's names."""
+"""The colours of lines, in order, by rich's names."""
 
 BLANK: Final = 0x2800
 
 DOTS: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-"""The bit of each dot in a character, by its row and its column."""
+"""The bit of each dot in a character, by row and column."""
 
 LABEL: Final = 10
-"""The width of a label, with the axis behind it."""
+"""The width of a label and the axis behind it, in characters."""
 
 LEAST_WIDTH: Final = LABEL + 10
 
@@ -46,7 +46,7 @@ class Line:
     points: deque[tuple[int, float]] = field(default_factory=deque)
 
     def add(self, time_ns: int, value: float) -> None:
-        """Add a value; after a time that went backwards, as when a bag begins again, begin anew."""
+        """Add a value; start over when time goes backwards, as when a bag starts again."""
         points = self.points
         if points and time_ns < points[-1][0]:
             points.clear()
@@ -58,12 +58,12 @@ class Line:
             self.points = thinned(points)
 
     def between(self, start_ns: int, end_ns: int) -> list[tuple[int, float]]:
-        """Return the points of a time."""
+        """Return the points in a time span."""
         return [point for point in self.points if start_ns <= point[0] <= end_ns]
 
 
 def thinned(points: deque[tuple[int, float]]) -> deque[tuple[int, float]]:
-    """Return about half of the points, which look the same: of each four the lowest and highest."""
+    """Return about half of the points, the lowest and highest of every four: they look the same."""
     newest = points.pop()
     kept: deque[tuple[int, float]] = deque()
     waiting = iter(points)
@@ -86,12 +86,12 @@ def value_of(point: tuple[int, float]) -> float:
 def chart(
     lines: Sequence[Line], *, width: int, height: int, start_ns: int, end_ns: int
 ) -> list[tuple[str, str]]:
-    """Return a picture of lines as pieces of text, each with the name of its colour or none.
+    """Return a chart of lines as pieces of text, each with the name of its colour, if any.
 
     Args:
-        lines: What to draw; all on the same scale.
-        width: The characters of a row.
-        height: The rows, with the axis and the legend of each line.
+        lines: The lines to draw, all on one scale.
+        width: Number of characters in a row.
+        height: Number of rows, including the axis and the legend of each line.
         start_ns: The time at the left edge.
         end_ns: The time at the right edge.
     """
@@ -121,7 +121,7 @@ def chart(
 
 
 def scale_of(values: Iterable[float]) -> tuple[float, float]:
-    """Return the least and the greatest value to show, with some space around what there is."""
+    """Return the least and the greatest value to show, with some space around the values."""
     finite = [value for value in values if math.isfinite(value)]
     if not finite:
         return -1.0, 1.0
@@ -134,8 +134,8 @@ class Canvas:
     """Dots in characters.
 
     Args:
-        columns: The characters of a row.
-        rows: The rows.
+        columns: Number of characters in a row.
+        rows: Number of rows.
 
     Attributes:
         bits: The dots of each character.

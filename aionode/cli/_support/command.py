@@ -48,7 +48,7 @@ def command(
     stop_s: float = STOP_S,
     **settings: Any,
 ) -> Callable[[VerbT], VerbT]:
-    """Return the decorator that makes a command of its verb, and returns the verb unchanged.
+    """Return a decorator that creates a command from its verb, and returns the verb unchanged.
 
     The verb is called with the node, its parameters by name, and ``output``. The command's help is
     the verb's docstring up to the first section; the help of the options describes the arguments.

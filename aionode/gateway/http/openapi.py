@@ -48,7 +48,7 @@ ERROR: Final = {
     "title": "Error",
     "type": "object",
     "properties": {
-        "code": {"type": "string", "description": "The kind of error, as a word for programs."},
+        "code": {"type": "string", "description": "The kind of error, as a code for programs."},
         "error": {"type": "string", "description": "The error, as a sentence for people."},
     },
     "required": ["code", "error"],

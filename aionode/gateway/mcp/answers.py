@@ -66,9 +66,10 @@ def bounded(values: Mapping[str, Any], most_bytes: int) -> dict[str, Any]:
 
 
 def cut(value: Any, items: int, characters: int, parts: Iterator[int], level: int = 0) -> Any:
-    """Return a value with lists and texts cut to a length, each with the number of what is cut.
+    """Return a value with lists and texts cut to a length, each with the number of omitted items.
 
-    It takes one of `parts` for itself and for each value within, and looks at none without one.
+    The value and each value in it consume one of `parts`; when these are used up, the rest is
+    omitted.
     """
     if level > MOST_LEVELS or next(parts, None) is None:
         return "..."

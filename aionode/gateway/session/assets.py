@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 __all__ = ["asset_of_uri", "read_asset"]
 
 MOST_BYTES: Final = 16 << 20
-"""The largest file where the rule has no ``max_bytes``, in bytes."""
+"""Maximum size of a file whose rule has no ``max_bytes``, in bytes."""
 
 PACKAGE: Final = re.compile(r"[A-Za-z0-9_-]{1,200}")
 
 UNUSUAL: Final = re.compile(r"[\x00-\x1f\x7f\\:]")
-"""What no path of a file has that is served: a colon would end the name of a node in a rule."""
+"""Characters that no served path contains: a colon would end the name of a node in a rule."""
 
 
 def asset_of_uri(uri: str) -> str:
     """Return the name of an asset, ``/package/path``, of ``package://package/path``.
 
     Raises:
-        MessageError: it is no such address.
+        MessageError: it is not such an address.
     """
     scheme, found, rest = uri.partition("://")
     if not found or scheme != "package":
@@ -52,7 +52,7 @@ async def read_asset(session: Session, name: str) -> bytes:
         name: The package and the path in its share folder, as ``/package/meshes/base.stl``.
 
     Raises:
-        MessageError: the name is no path below a package.
+        MessageError: the name is not a path in a package.
         RefusedError: the policy does not allow it, or the file is too large.
         FileNotFoundError: there is no such file in the package.
     """
@@ -60,7 +60,7 @@ async def read_asset(session: Session, name: str) -> bytes:
     parts = path.split("/")
     is_plain = PACKAGE.fullmatch(package) and not UNUSUAL.search(path)
     if not is_plain or not {"", ".", ".."}.isdisjoint(parts):
-        raise MessageError("asset", f"{name[:200]!r} is no path of a file below a package")
+        raise MessageError("asset", f"{name[:200]!r} is not the path of a file in a package")
     rights = session.rights
     with rights.one_call("asset", name):
         rule = (await rights.allow("asset", name, "", None)).rule
@@ -86,5 +86,5 @@ def content_of(package: str, parts: list[str], most: int) -> bytes:
     share = here().share(package).resolve()
     file = share.joinpath(*parts).resolve(strict=True)
     if not file.is_relative_to(share) and package_of(file) != package:
-        raise FileNotFoundError(errno.ENOENT, "a link to a file of something else", str(file))
+        raise FileNotFoundError(errno.ENOENT, "a link to a file outside the package", str(file))
     return read_file(file, most)

@@ -129,7 +129,7 @@ class GraphView:
         )
 
     async def why(self, name: str) -> Why:
-        """Return what led to the latest thing of a name; what the client may not see is left out.
+        """Return what led to the latest item of a name, without what the client may not see.
 
         Raises:
             RefusedError: too many queries of the client are waiting.

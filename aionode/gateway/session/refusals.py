@@ -38,7 +38,7 @@ MOST_TEXT: Final = 500
 
 
 class Refusal(enum.Enum):
-    """Why something was refused, dropped or late; the value is the word for programs."""
+    """Why something was refused, dropped or late; the value is the code for programs."""
 
     # The codes of RefusedError
     UNAUTHORIZED = "unauthorized"

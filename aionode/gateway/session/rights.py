@@ -176,7 +176,7 @@ class Rights:
 
     def one_call(self, verb: str, name: str) -> AbstractContextManager[None]:
         """Count one more call, goal or node query for the duration of the block."""
-        what = "calls, goals and questions under way"
+        what = "calls, goals and queries in progress"
         return self.one_more(verb, name, what, (), self.limits.calls)
 
     def check_size(self, verb: Verb, name: str, decision: Decision, message: Message) -> None:

@@ -1,4 +1,4 @@
-"""The gateway in the place of another program that serves clients."""
+"""The gateway in place of another program that serves clients."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Original", "bridge", "serve"]
 THIS_HOST: Final = "127.0.0.1"
 
 ALL: Final = ([".*"], [""], "", "*", "[*]", "['*']", False)
-"""Values of a parameter that restricts clients, with which it restricts nothing."""
+"""Values with which a parameter that restricts clients restricts nothing."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Original:
 
 
 def bridge(node: Node, original: Original) -> Gateway:
-    """Return the gateway in the place of a program, as the node's parameters ask for it.
+    """Return the gateway in place of a program, configured by the node's parameters.
 
     Raises:
         CommandError: A parameter restricts clients, or opens the gateway to other hosts, and there
@@ -64,8 +64,8 @@ def bridge(node: Node, original: Original) -> Gateway:
             )
     if host not in {THIS_HOST, "localhost"}:
         node.get_logger().warning(
-            f"without a policy that knows its clients it listens on {THIS_HOST} rather than on "
-            f"{host}: the parameter 'policy' names the file of one"
+            f"without a policy that identifies clients, it listens on {THIS_HOST} and not on "
+            f"{host}: name the file of one by the parameter 'policy'"
         )
     return Gateway(node, host=THIS_HOST, port=port)
 

@@ -1,4 +1,4 @@
-"""The common part of camera nodes: pictures of a device or a file become messages."""
+"""The base of camera nodes: pictures of a device or a file become messages."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Camera(Node):
                 await wall_clock(self).sleep(RETRY_SEC)
 
     async def play(self) -> None:
-        """Publish the pictures of a camera, or once those of a file.
+        """Publish the pictures of a camera, or those of a file once.
 
         Raises:
             OSError: It cannot be opened, or no longer be read.

@@ -38,7 +38,7 @@ LEVEL: Final = "out.compressed.png_level"
 FORMAT: Final = "out.compressed.format"
 
 DEPTH: Final = "out.compressedDepth."
-"""How the names of parameters of depth begin."""
+"""The prefix of the parameters of depth."""
 
 
 def topic_of(node: Node, base: str, transport: str) -> str:

@@ -19,8 +19,8 @@ class Format(NamedTuple):
 
     Attributes:
         v4l2: The format requested from a camera, by ffmpeg's name.
-        av: To what ffmpeg converts them.
-        encoding: What ROS calls that.
+        av: The format to which ffmpeg converts them.
+        encoding: ROS's name for that format.
     """
 
     v4l2: str
@@ -47,8 +47,8 @@ class Frame(NamedTuple):
 
     Attributes:
         pixels: Its pixels.
-        encoding: What they are.
-        jpeg: The same as JPEG, if it came so and has its size.
+        encoding: Their encoding.
+        jpeg: The picture as JPEG, if the camera sent it so and in this size.
     """
 
     pixels: npt.NDArray[Any]
@@ -57,10 +57,10 @@ class Frame(NamedTuple):
 
 
 def check_device(path: str, *, may_come_later: bool = False) -> None:
-    """Refuse a camera that does not exist, unless it may come later, or cannot be read.
+    """Refuse a camera that cannot be read, or that does not exist and may not come later.
 
     Raises:
-        CommandError: There is none, or PyAV is not installed.
+        CommandError: There is no such camera, or PyAV is not installed.
     """
     if not may_come_later and not Path(path).exists():
         there = sorted(str(each) for each in Path("/dev").glob("video*"))

@@ -1,4 +1,4 @@
-"""``diagnostic_aggregator add_analyzer``: has a running aggregator analyze more."""
+"""``diagnostic_aggregator add_analyzer``: adds analyzers to a running aggregator."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Aggregator(Node):
         return {name: parameter.value for name, parameter in parameters.items()}
 
     def on_parameters(self, parameters: Sequence[Parameter]) -> None:
-        """Make the analyzers anew if parameters of one have been set, as add_analyzer does it."""
+        """Create the analyzers again if parameters of one were set, as by add_analyzer."""
         if any("." in parameter.name for parameter in parameters):
             self.group = self.make_analyzers(self.base, self.given())
 

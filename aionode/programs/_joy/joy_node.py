@@ -124,7 +124,7 @@ class JoyNode(Node):
             self.publisher.publish(Joy(header=header, axes=axes, buttons=buttons))
 
     def on_feedback(self, feedback: JoyFeedback) -> None:
-        """Rumble; a joystick has one rumble, number 0, and nothing else that is set here."""
+        """Rumble; a joystick has one rumble motor, number 0, and no other feedback."""
         is_rumble = feedback.type == JoyFeedback.TYPE_RUMBLE and feedback.id == 0
         if self.joystick is None or not is_rumble or not 0.0 <= feedback.intensity <= 1.0:
             return

@@ -48,10 +48,10 @@ class Device(Protocol):
         """Return the pending events."""
 
     def upload_effect(self, effect: Any) -> int:
-        """Have the device know an effect, and return its number."""
+        """Store an effect in the device, and return its number."""
 
     def write(self, etype: int, code: int, value: int) -> None:
-        """Have the device do something, such as to play an effect so many times."""
+        """Send an event to the device, such as to play an effect several times."""
 
     def close(self) -> None:
         """Close the device."""

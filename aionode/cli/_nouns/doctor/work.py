@@ -1,4 +1,4 @@
-"""What a doctor finds in the counts of running processes, and in what nodes say of themselves."""
+"""Findings from the counts of running processes, and from the diagnostics that nodes publish."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ BUDGET_MS: Final = 10.0
 """How long a callback may hold the event loop by default, in milliseconds."""
 
 LATE_MS: Final = 100.0
-"""From which wait on messages are late for their callback, in milliseconds."""
+"""How long messages wait before they count as late for their callback, in milliseconds."""
 
 ENOUGH: Final = 5
-"""Calls of a callback between two looks from which on it is judged."""
+"""Minimum number of calls between two snapshots for a callback to be judged."""
 
 MANY: Final = 0.01
-"""The part of messages from which on drops are told."""
+"""Fraction of dropped messages from which on drops are reported."""
 
 LOOKING_S = 1.2
-"""Time between two looks, and for which statuses are listened for, in seconds: most nodes publish
-theirs once a second, and what happened while a process started says nothing of now.
+"""Time between two snapshots, during which statuses are received, in seconds: most nodes publish
+theirs once a second, and counts from the start of a process say nothing about the present.
 """
 
 MOST_STATUSES: Final = 20
-"""The most statuses that are told."""
+"""Maximum number of statuses that are reported."""
 
 MOST_KNOWN: Final = 10_000
-"""The most statuses that are remembered."""
+"""Maximum number of statuses that are kept."""
 
 LEVELS: Final = {
     DiagnosticStatus.WARN: "a warning",
@@ -53,7 +53,7 @@ LEVELS: Final = {
 
 
 async def findings_of_work(node: Node) -> list[Finding]:
-    """Look twice at what all processes do, listen to what nodes say, and return what is wrong."""
+    """Take two snapshots of all processes, receive diagnostics, and return what is wrong."""
     before = await observe(node)
     statuses = await statuses_of(node)
     found = rates(before, await observe(node))
@@ -79,13 +79,13 @@ def work_findings(found: Rates) -> Iterator[Finding]:
         yield Finding(
             "hint",
             ", ".join(names),
-            "its version of aionode is too old to report what it does",
+            "its version of aionode is too old to report its counts",
             "update aionode there",
         )
 
 
 def waits_of(process: ProcessReport) -> Iterator[Finding]:
-    """Yield a finding if callbacks of a process had no processor."""
+    """Yield a finding if callbacks of a process had to wait for a processor."""
     if not process.processor_waits:
         return
     busy = process.load > process.cores
@@ -154,7 +154,7 @@ def percentile_ms(measured: Distribution | None) -> float:
 
 
 async def statuses_of(node: Node) -> list[DiagnosticStatus]:
-    """Return the newest statuses that nodes publish on /diagnostics until it is time to look."""
+    """Return the newest statuses that nodes publish on /diagnostics until the next snapshot."""
     newest: dict[str, DiagnosticStatus] = {}
 
     def note(message: DiagnosticArray) -> None:

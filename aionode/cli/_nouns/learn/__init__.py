@@ -146,7 +146,7 @@ def export_command(episodes: tuple[str, ...], out: str, **values: Any) -> None:
 
     Each of EPISODES is a bag, or a folder of bags. Each picture of the contract's reference is a
     row; everything else is as of its time. Prints what became of the messages. The exit status is 1
-    if something is over the limits. What was interrupted goes on when it is started again.
+    if a limit is exceeded. An export that was interrupted continues when it is started again.
     """
     from aionode.learn import Contract, Limits, export
 

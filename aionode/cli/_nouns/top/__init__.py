@@ -30,8 +30,8 @@ __all__ = ["top", "top_command"]
 def top_command(json: bool, once: bool, interval: float) -> None:
     """Show what all processes of a robot do: rates, losses, callbacks, processors, memory, log.
 
-    The processes are asked for what they count, so no topic is subscribed to. --once and --json
-    need nothing but aionode; the live view needs the extra `tui`.
+    The processes are asked for their counts, so no topic is subscribed to. --once and --json need
+    only aionode; the live view needs the extra `tui`.
     """
     run_verb(
         lambda node, output: top(node, output=output, once=once, interval=interval),
@@ -46,8 +46,8 @@ async def top(node: Node, *, output: Output, once: bool = False, interval: float
     Args:
         node: The command's node.
         output: Where to print.
-        once: Whether to print one look and return.
-        interval: The time between two looks, in seconds.
+        once: Whether to print one snapshot and return.
+        interval: The time between two snapshots, in seconds.
 
     Raises:
         CommandError: the live view cannot be shown.

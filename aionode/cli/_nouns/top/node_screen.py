@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["NodeScreen"]
 
 PATIENCE_S: Final = 30.0
-"""How long a transition may take, in seconds: some connect with devices."""
+"""How long a transition may take, in seconds: some connect to devices."""
 
 
 class NodeScreen(ModalScreen[None]):
@@ -53,7 +53,7 @@ class NodeScreen(ModalScreen[None]):
         self._chosen = ""
 
     def compose(self) -> ComposeResult:
-        """Make the view."""
+        """Create the view."""
         yield Static(
             Text(escaped(f"{self._of}: Enter changes a parameter, or the state")), id="what"
         )
@@ -69,7 +69,7 @@ class NodeScreen(ModalScreen[None]):
         await self.fill()
 
     async def fill(self) -> None:
-        """Show what the node has now."""
+        """Show the current parameters and transitions of the node."""
         rows: DataTable[Any] = self.query_one("#rows", DataTable)
         rows.clear()
         with self.telling():
@@ -124,7 +124,7 @@ class NodeScreen(ModalScreen[None]):
 
     @contextmanager
     def telling(self) -> Iterator[None]:
-        """Show why something is not done."""
+        """Show why something has failed in the block."""
         try:
             yield
         except AionodeError as error:
@@ -135,7 +135,7 @@ class NodeScreen(ModalScreen[None]):
         self.query_one("#said", Static).update(Text(escaped(text)))
 
     def action_leave(self) -> None:
-        """Go back; first from the value that is typed."""
+        """Go back; first leave the input of a value."""
         field = self.query_one("#value", Input)
         if field.has_focus:
             field.disabled = True
@@ -156,5 +156,5 @@ def borrowed_clients(node: Node) -> Iterator[None]:
 
 
 def cell(value: str) -> Text:
-    """Return a cell with a text of others."""
+    """Return a cell with text from another program."""
     return Text(escaped(value, one_line=True))

@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 __all__ = ["TopApp"]
 
 KEPT: Final = 120
-"""The looks that the plot of a row shows."""
+"""Number of snapshots that the plot of a row shows."""
 
 MOST_ROWS: Final = 500
-"""The most rows of a table."""
+"""Maximum number of rows of a table."""
 
 MOST_STATUSES: Final = 10_000
-"""The most statuses of /diagnostics that are remembered."""
+"""Maximum number of statuses of /diagnostics that are kept."""
 
 SHOWN: Final = (*TABLES, "diagnostics")
 """The tables of the view."""
@@ -52,11 +52,11 @@ LEVELS: Final = {10: "dim", 20: "", 30: "yellow", 40: "red", 50: "bold red"}
 
 
 class TopApp(App[None]):
-    """Tables of what all processes do, asked again and again.
+    """Tables of what all processes do, updated at an interval.
 
     Args:
         node: The command's node.
-        interval: The time between two looks, in seconds.
+        interval: The time between two snapshots, in seconds.
     """
 
     CSS = """
@@ -96,7 +96,7 @@ class TopApp(App[None]):
         self._history: dict[tuple[str, str], deque[float]] = {}
 
     def compose(self) -> ComposeResult:
-        """Make the view."""
+        """Create the view."""
         yield Static(id="notes")
         with TabbedContent(initial="processes"):
             for name in SHOWN:
@@ -111,13 +111,13 @@ class TopApp(App[None]):
         yield Footer()
 
     async def on_mount(self) -> None:
-        """Look for the first time, and from then on again and again."""
+        """Take the first snapshot, and then one after each interval."""
         self.query_one("#processes-table", DataTable).focus()
         self._before = await observe(self._node)
         self.set_interval(self._interval, self.look)
 
     async def look(self) -> None:
-        """Ask all processes, and show what they have done since the last look."""
+        """Take a snapshot of all processes, and show what they have done since the last one."""
         before, self._before = self._before, await observe(self._node)
         if before is None or self._paused or not self.query("#notes"):  # it ends
             return
@@ -134,11 +134,11 @@ class TopApp(App[None]):
 
     @property
     def shown(self) -> str:
-        """The name of the table that is shown."""
+        """The name of the visible table."""
         return self.query_one(TabbedContent).active
 
     def show(self) -> None:
-        """Fill the table that is shown, with the cursor on the row on which it was."""
+        """Fill the visible table, keeping the cursor on its row."""
         name = self.shown
         table = self._tables.get(name)
         if table is None:
@@ -189,14 +189,14 @@ class TopApp(App[None]):
         self.plot(event.data_table)
 
     def on_data_table_header_selected(self, event: DataTable.HeaderSelected) -> None:
-        """Sort by the column; again, the other way round."""
+        """Sort by the column; a second time in reverse."""
         column, reverse = self._sorted[self.shown]
         same = column == event.column_index
         self._sorted[self.shown] = (event.column_index, same and not reverse)
         self.show()
 
     def on_tabbed_content_tab_activated(self) -> None:
-        """Fill the table that is shown now; the log is subscribed to when it is looked at."""
+        """Fill the table that is now visible; subscribe to the log when it is first shown."""
         if self.shown == "log":
             self.hear_log()
             return
@@ -205,7 +205,7 @@ class TopApp(App[None]):
         self.show()
 
     def hear_diagnostics(self) -> None:
-        """Subscribe to what nodes say of themselves, once."""
+        """Subscribe to the diagnostics of nodes, once."""
         if any(each.topic_name == "/diagnostics" for each in self._node.subscriptions):
             return
 
@@ -245,18 +245,18 @@ class TopApp(App[None]):
             self.show()
 
     def action_reverse(self) -> None:
-        """Sort the other way round."""
+        """Reverse the order."""
         if self.shown in self._sorted:
             column, reverse = self._sorted[self.shown]
             self._sorted[self.shown] = (column, not reverse)
             self.show()
 
     def action_pause(self) -> None:
-        """Keep what is shown, or go on."""
+        """Pause or resume the display."""
         self._paused = not self._paused
 
     def action_filter(self) -> None:
-        """Type which rows to show."""
+        """Ask which rows to show."""
         field = self.query_one("#filter", Input)
         field.disabled = False
         field.add_class("shown")
@@ -273,7 +273,7 @@ class TopApp(App[None]):
                 )
 
     def action_field(self) -> None:
-        """Ask which field of the topic under the cursor to plot; again, plot rates as before."""
+        """Ask which field of the topic to plot; a second time, plot rates again."""
         self._said = ""
         if self._field is not None:
             self._field.end()
@@ -358,12 +358,12 @@ class Field:
         of.update(Text(escaped(f"{self._name}: {newest}   (f plots rates again)")))
 
     def end(self) -> None:
-        """Subscribe no more."""
+        """End the subscription."""
         self._subscription.destroy()
 
 
 def cell_of(value: Any) -> Text:
-    """Return a cell: numbers on the right."""
+    """Return a cell, with numbers aligned right."""
     if isinstance(value, str):
         return Text(escaped(value, one_line=True))
     return Text(f"{value:g}" if isinstance(value, float) else str(value), justify="right")

@@ -30,9 +30,9 @@ class Table:
 
     Attributes:
         columns: The names of the columns.
-        rows: The rows, by what identifies them.
+        rows: The rows, by key.
         sorted_by: The column by which they are sorted unless another one is chosen.
-        descending: Whether the greatest comes first.
+        descending: Whether the largest comes first.
     """
 
     columns: tuple[str, ...]
@@ -43,7 +43,7 @@ class Table:
     def in_order(
         self, column: int | None = None, *, reverse: bool = False
     ) -> list[tuple[str, Any]]:
-        """Return the rows by a column: texts from A on, numbers from the greatest on."""
+        """Return the rows sorted by a column: texts ascending, numbers descending."""
         by = self.sorted_by if column is None else column
         descending = (self.descending if column is None else by > 0) ^ reverse
 
@@ -150,7 +150,7 @@ def topics(entities: list[EntityRate]) -> Table:
 
 
 def asked(entities: list[EntityRate], kind: str) -> Table:
-    """Return the services or actions with how often they are asked, and how long they take."""
+    """Return the services or actions with their request rates and durations."""
     table = Table(
         (kind.split(maxsplit=1)[0], "Hz", "calls", "errors", "p50 ms", "p99 ms", "nodes", "type"),
         sorted_by=1,
@@ -171,7 +171,7 @@ def asked(entities: list[EntityRate], kind: str) -> Table:
 
 
 def callbacks(entities: list[EntityRate]) -> Table:
-    """Return the callbacks with how long messages wait for them, they run and block the loop."""
+    """Return the callbacks with their waits, their run times, and how long they block the loop."""
     table = Table(
         ("callback", "node", "of", "Hz", "wait p99 ms", "run p50 ms", "run p99 ms", "block p99 ms",
          "block max ms", "errors"),
@@ -202,7 +202,7 @@ def callbacks(entities: list[EntityRate]) -> Table:
 
 
 def diagnostics(statuses: Iterable[DiagnosticStatus]) -> Table:
-    """Return what nodes say of themselves and their devices, the worst first."""
+    """Return the diagnostics of nodes and their devices, the worst first."""
     table = Table(("status", "level", "message", "hardware"), sorted_by=1, descending=True)
     for status in statuses:
         level = status.level[0]
@@ -216,13 +216,13 @@ def diagnostics(statuses: Iterable[DiagnosticStatus]) -> Table:
 
 
 def milliseconds(entity: EntityRate, duration: str, percent: float) -> float:
-    """Return a percentile of a duration of an entity since the last look."""
+    """Return a percentile of a duration of an entity since the last snapshot."""
     measured = entity.durations.get(duration)
     return 0.0 if measured is None else round(measured.percentile_ns(percent) / 1e6, 3)
 
 
 def notes(rates: Rates) -> list[str]:
-    """Return in words which processes are not in the tables, and why."""
+    """Return lines that name the processes missing from the tables, and why."""
     found = rates.snapshot
     lines = [
         f"{', '.join(names)}: no answer: frozen, blocked or dead" for names in found.silent.values()
@@ -241,7 +241,7 @@ def notes(rates: Rates) -> list[str]:
 
 
 def record_of(rates: Rates) -> dict[str, Any]:
-    """Return everything for programs."""
+    """Return everything as a record."""
     record: dict[str, Any] = {
         name: [dict(zip(table.columns, row, strict=True)) for _, row in table.in_order()]
         for name, table in tables_of(rates).items()
@@ -250,7 +250,7 @@ def record_of(rates: Rates) -> dict[str, Any]:
 
 
 def shown(value: object) -> str:
-    """Return a cell as text on one line: programs and nodes of others may have any name."""
+    """Return a cell as text on one line, as other programs and nodes may have any name."""
     return escaped(str(value), one_line=True)
 
 

@@ -37,10 +37,10 @@ plotting = click.Group("topic")
 REDRAW_S: Final = 0.2
 
 ROWS: Final = 24
-"""The most rows of a chart, and those where the output is no terminal."""
+"""Maximum number of rows of a chart, and their number if the output is not a terminal."""
 
 COLUMNS: Final = 100
-"""The characters of a row where the output is no terminal."""
+"""Number of characters in a row if the output is not a terminal."""
 
 
 @command(
@@ -82,7 +82,7 @@ async def plot(
     the end, by Ctrl-C or --duration, one for each field. --json prints each value.
 
     Raises:
-        CommandError: a field is not there or no number, or the picture cannot be written.
+        CommandError: a field is missing or not a number, or the picture cannot be written.
     """
     if png is not None:
         check_picture(png)
@@ -129,12 +129,12 @@ class Number:
         """Add the value of a message.
 
         Raises:
-            CommandError: it has no such field, or the field is no number.
+            CommandError: it has no such field, or the field is not a number.
         """
         value, type_ = field_of(msg, self.path)
         if hasattr(value, "__len__") or not hasattr(value, "__float__"):  # an array may have both
             raise CommandError(
-                f"Invalid field '{self.path}': {type_ or self.topic} is no number; name a number"
+                f"Invalid field '{self.path}': {type_ or self.topic} is not a number; name a number"
                 " in it, such as twist.linear.x or ranges[0]"
             )
         number = float(value)
@@ -147,7 +147,7 @@ class Number:
 async def follow(
     node: Node, numbers: Sequence[Number], output: Output, window: float, duration: float | None
 ) -> None:
-    """Draw numbers as they arrive, until the time is over."""
+    """Draw numbers as they arrive, until the duration has passed."""
     follower = Follower(node)
     subscriptions: list[Subscription[Any]] = []
     by_topic: dict[str, list[Number]] = {}
@@ -188,7 +188,7 @@ async def follow(
 
 
 def warn_of_dropped(subscriptions: Sequence[Subscription[Any]], output: Output) -> None:
-    """Say how many messages were not drawn, if any."""
+    """Report how many messages were not drawn, if any."""
     dropped = sum(subscription.stats.dropped for subscription in subscriptions)
     if dropped:
         output.warn(f"{dropped} messages arrived too fast to be drawn")
@@ -205,7 +205,7 @@ def read_bag(path: str, numbers: Sequence[Number], output: Output) -> None:
     """Read the numbers of a recording.
 
     Raises:
-        CommandError: there is no such bag, or it has nothing of a topic.
+        CommandError: there is no such bag, or it lacks a topic.
         BagError: it cannot be read.
     """
     with open_bag(path) as recording:
@@ -224,7 +224,7 @@ def read_bag(path: str, numbers: Sequence[Number], output: Output) -> None:
 def finish(
     lines: Sequence[Line], output: Output, window: float, png: str | None, *, is_all: bool
 ) -> None:
-    """Print charts where no terminal has shown them, and write the picture."""
+    """Print charts unless a terminal has shown them, and write the picture."""
     ends = [line.points[-1][0] for line in lines if line.points]
     if not ends:
         output.warn("no message has arrived")
@@ -245,10 +245,10 @@ def finish(
 
 
 def check_picture(path: str) -> None:
-    """Find out before anything is collected whether a picture can be written.
+    """Check in advance whether a picture can be written.
 
     Raises:
-        CommandError: matplotlib or the folder is not there.
+        CommandError: matplotlib or the folder is missing.
     """
     try:
         import matplotlib.figure  # noqa: F401  # slow, and few need it

@@ -1,4 +1,4 @@
 """What `aionode deploy` ships, and how it gets to a robot.
 
-The scripts beside these modules run on the robot, in this order, each in an ``ssh`` of its own.
+The scripts beside these modules run on the robot, in this order, each in its own ``ssh`` session.
 """

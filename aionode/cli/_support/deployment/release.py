@@ -1,4 +1,4 @@
-"""What is shipped to a robot: the files of a workspace, its wheels, and a unit of systemd."""
+"""What is shipped to a robot: the files of a workspace, its wheels, and a systemd unit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from aionode._packages import Packages
 __all__ = ["Release", "release_of"]
 
 LEFT_OUT: Final = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
-"""Folders that hold what was made from the others."""
+"""Folders with files that were generated from others."""
 
 BUILDS_A_WHEEL: Final = ("pyproject.toml", "setup.py")
 CURRENT: Final = "current"
@@ -29,16 +29,16 @@ CURRENT: Final = "current"
 
 @dataclass(frozen=True)
 class Release:
-    """What is shipped at once.
+    """Everything that one deployment ships.
 
     Attributes:
         workspace: The folder that it comes from.
         unit: The file of the unit, in that folder.
         folder: The folder on the robot.
-        user: Who runs it there.
+        user: The user that runs it there.
         files: The files of the workspace, relative to it.
-        packages: The packages of which wheels are built.
-        wheels: Wheels that are shipped as they are.
+        packages: The packages from which wheels are built.
+        wheels: Wheels that are shipped unchanged.
     """
 
     workspace: Path
@@ -51,7 +51,7 @@ class Release:
 
     @property
     def id(self) -> str:
-        """A name that is the same as long as nothing that is shipped changes."""
+        """A name that stays the same until something that is shipped changes."""
         digest = hashlib.sha256()
         for file in (*(self.workspace / file for file in self.files), *self.wheels):
             name = file.relative_to(self.workspace) if file not in self.wheels else file.name
@@ -69,7 +69,7 @@ class Release:
         """
         for package in self.packages:
             pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet"]
-            done = subprocess.run(  # noqa: S603  # pip, and a folder that the user names
+            done = subprocess.run(  # noqa: S603  # pip, with a folder that the user names
                 [*pip, "--no-deps", "--wheel-dir", str(wheels), str(package)], check=False
             )
             if done.returncode:
@@ -85,7 +85,7 @@ class Release:
 
 
 def without_owner(entry: tarfile.TarInfo) -> tarfile.TarInfo:
-    """Return the entry of an archive without what is known on this host only."""
+    """Return the entry of an archive without its owner, who is known only on this host."""
     entry.uid = entry.gid = 0
     entry.uname = entry.gname = ""
     return entry
@@ -96,11 +96,11 @@ def release_of(workspace: Path, unit: Path | None, wheels: tuple[Path, ...]) -> 
 
     Args:
         workspace: The folder of the packages.
-        unit: The file of the unit; else the one in that folder.
-        wheels: Wheels that are shipped besides.
+        unit: The file of the unit; by default the only one in that folder.
+        wheels: Additional wheels to ship.
 
     Raises:
-        click.UsageError: There is no such unit, or it does not say where it runs; there is nothing
+        click.UsageError: There is no such unit, or it does not name its folder; there is nothing
             to install.
     """
     workspace = workspace.resolve()
@@ -122,7 +122,7 @@ def release_of(workspace: Path, unit: Path | None, wheels: tuple[Path, ...]) -> 
 
 
 def only_unit(workspace: Path) -> Path:
-    """Return the unit that lies in a workspace."""
+    """Return the only unit in a workspace."""
     units = sorted(workspace.glob("*.service"))
     if len(units) != 1:
         there = ", ".join(unit.name for unit in units) or "none"
@@ -134,7 +134,7 @@ def only_unit(workspace: Path) -> Path:
 
 
 def place_in(unit: Path) -> tuple[PurePosixPath, str]:
-    """Return the folder on the robot, and the user, that a unit names."""
+    """Return the folder on the robot and the user that a unit names."""
     parser = configparser.ConfigParser(
         strict=False, interpolation=None, delimiters=("=",), comment_prefixes=("#", ";")
     )
@@ -158,7 +158,7 @@ def place_in(unit: Path) -> tuple[PurePosixPath, str]:
 
 
 def files_in(workspace: Path) -> Iterator[Path]:
-    """Yield the files of a workspace, relative to it; what begins with a dot stays here."""
+    """Yield the files of a workspace, relative to it, except those that begin with a dot."""
     for folder, folders, files in os.walk(workspace):
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and name not in LEFT_OUT

@@ -1,4 +1,4 @@
-"""The robot that is deployed to, over the ``ssh`` and ``scp`` of this host."""
+"""The robot to deploy to, reached by the ``ssh`` and ``scp`` of this host."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ OPTIONS: Final = (
     *("-o", "ServerAliveInterval=5", "-o", "ServerAliveCountMax=3"),  # a link that is gone ends it
 )
 LOST: Final = 255
-"""The exit status of ssh whose connection did not come about, or broke."""
+"""The exit status of ssh if its connection failed or broke."""
 
 CONSEQUENCES: Final = {
     "prepare": "nothing was changed there",
     "install": "what ran there still runs; run the same command again",
     "activate": "the new release is current, but systemd did not accept or start its unit",
 }
-"""What a script that failed has left behind."""
+"""What a failed script has left behind."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Robot:
     """A host that ssh reaches.
 
     Attributes:
-        target: Its name as ssh takes it.
-        config: A file with options of ssh, in place of the user's.
-        is_dry: Whether to print commands in place of running them.
+        target: Its name for ssh.
+        config: A configuration file for ssh, instead of the user's.
+        is_dry: Whether to print commands instead of running them.
     """
 
     target: str
@@ -64,7 +64,7 @@ class Robot:
         """Copy a file onto the robot.
 
         Raises:
-            click.ClickException: It was not copied whole.
+            click.ClickException: It was not copied completely.
         """
         command = ["scp", "-q", *self.options(), str(file), f"{self.target}:{shlex.quote(str(to))}"]
         if self.is_dry:
@@ -73,7 +73,7 @@ class Robot:
         self.checked(command, "copy", "")
 
     def follow(self, unit: str) -> None:
-        """Print the log of a unit until Ctrl-C, in the place of this process."""
+        """Print the log of a unit until Ctrl-C, replacing this process."""
         remote = f"journalctl --unit {shlex.quote(unit)} --lines 20 --follow"
         command = ["ssh", *self.options(), self.target, remote]
         if self.is_dry:
