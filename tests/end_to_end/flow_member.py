@@ -16,6 +16,7 @@ from typing import Any
 import aionode
 from aionode import Node
 from aionode._process.concurrency import checkpoint
+from aionode.clock import thread_waited_ns
 from aionode.errors import AionodeError, QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
@@ -192,13 +193,14 @@ class Member(Node):
     # What is asked of all
 
     async def watch(self) -> None:
-        """Measure how long the loop stands still."""
-        before_s = time.perf_counter()
+        """Measure how long the loop stands still; not while its thread waits for a processor."""
+        before_s, before_ns = time.perf_counter(), thread_waited_ns() or 0
         while True:
             await asyncio_sleep(TICK_S)
-            now_s = time.perf_counter()
-            self.gap_s = max(self.gap_s, now_s - before_s - TICK_S)
-            before_s = now_s
+            now_s, now_ns = time.perf_counter(), thread_waited_ns() or 0
+            waited_s = (now_ns - before_ns) / 1e9
+            self.gap_s = max(self.gap_s, now_s - before_s - waited_s - TICK_S)
+            before_s, before_ns = now_s, now_ns
             if self.role == "keeper":
                 self.side.publish(self.message(0))
 

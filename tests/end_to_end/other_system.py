@@ -65,12 +65,16 @@ def no_timerfd() -> NoReturn:
     raise OSError(errno.ENOSYS, "no timerfd here")
 
 
+def import_libraries() -> None:
+    """Import libraries that ask for this system's name, which stays."""
+    for name in ("textual.app", "mcp.server"):
+        with suppress(ImportError):
+            importlib.import_module(name)
+
+
 def become(system: str) -> None:
     """Remove what `system` lacks."""
     asyncio.new_event_loop().close()  # which imports the rest of asyncio
-    for name in ("textual.app", "mcp.server"):  # they ask for this system's name, which stays
-        with suppress(ImportError):
-            importlib.import_module(name)
     pair, unix = socket.socketpair, socket.AF_UNIX
     socket.socketpair = lambda *_, **__: pair(unix)  # Windows has it
     fitting = selectors.SelectSelector if system == "windows" else selectors.PollSelector
@@ -89,6 +93,8 @@ def become(system: str) -> None:
 
 
 if __name__ == "__main__":
+    if sys.argv[3:] == ["import"]:  # of every module; it takes a second
+        import_libraries()
     become(sys.argv[1])
     program = sys.argv[2]
     sys.argv[:] = sys.argv[2:]
