@@ -47,6 +47,8 @@ PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NAME = 15
 LOOK_S = 0.1
 """Time between two checks of processes that should end, in seconds."""
+EXEC_S = 2.0
+"""The longest time that an exec may take, in seconds; it may wait for a processor."""
 
 
 class Program:
@@ -96,19 +98,20 @@ class Program:
             self.stopping = False
             self.stop()
 
-    def is_left(self, *, strangers: bool) -> bool:
+    def is_left(self, *, strangers: bool, in_exec: bool) -> bool:
         """Return whether a process may be left even though none was found.
 
         During an exec a process has no environment for a moment, and thus no token.
 
         Args:
             strangers: Whether there are processes that could not be assigned to a program.
+            in_exec: Whether one of them is in an exec.
         """
         if not strangers:
             return False
         now = time.monotonic()
         self._doubted = self._doubted or now
-        return now < self._doubted + LOOK_S / 2
+        return now < self._doubted + (EXEC_S if in_exec else LOOK_S / 2)
 
     def advance(self, rest: list[int]) -> None:
         """Send the signal that is due, if any.
@@ -301,11 +304,13 @@ class Guardian:
             return
         processes = descendants(os.getpid())
         owned = owned_by(self._programs.values(), processes)
-        strangers = sum(map(len, owned.values())) < len(processes)
+        known = {pid for pids in owned.values() for pid in pids}
+        strangers = [pid for pid, _, _ in processes if pid not in known]
+        in_exec = any(map(is_in_exec, strangers))
         for program in stopping:
             rest = owned.get(program.number, [])
             if program.ended and not rest:
-                if program.is_left(strangers=strangers):
+                if program.is_left(strangers=bool(strangers), in_exec=in_exec):
                     continue
                 program.gone = True
                 self._forget(program)
@@ -376,6 +381,19 @@ def stat_of(name: str) -> list[str]:
             os.close(file)
     except OSError:
         return []
+
+
+def is_in_exec(pid: int) -> bool:
+    """Return whether a process that had no token is in an exec, or has come out of one meanwhile.
+
+    In an exec it has no arguments either. It may stay there for long where it waits for a
+    processor.
+    """
+    try:
+        with open(f"/proc/{pid}/cmdline", "rb") as file:  # noqa: PTH123
+            return not file.read(1) or bool(tokens_in(pid))
+    except OSError:  # it has ended, or runs as another user
+        return False
 
 
 def tokens_in(pid: int) -> list[str]:

@@ -16,6 +16,8 @@ from tests.support.peers import isolated_environment
 OTHER_SYSTEM = str(Path(__file__).with_name("other_system.py"))
 MEMBER = str(Path(__file__).with_name("plain_member.py"))
 
+pytestmark = pytest.mark.timeout(180)  # importing every module takes 5 s of processor time
+
 both_systems = pytest.mark.parametrize("system", ["windows", "macos"])
 one_system = pytest.mark.parametrize(
     "system", ["windows", pytest.param("macos", marks=pytest.mark.stress)]
@@ -36,7 +38,7 @@ def output_of(system: str, *arguments: str) -> str:
         [sys.executable, OTHER_SYSTEM, system, *arguments],
         capture_output=True,
         text=True,
-        timeout=40,
+        timeout=150,
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         check=False,

@@ -56,7 +56,7 @@ async def test_yes_lets_it_pass(asking: Bench, era: str, what: str) -> None:
     answered = await client.call_tool(*CALLS[what])
 
     assert not answered.is_error, answered.content
-    assert len(person.asked) == 1
+    assert 1 <= len(person.asked) <= 1 + client.repeats
     assert person.asked[0].startswith("Allow model to ")
 
 

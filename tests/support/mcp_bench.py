@@ -12,6 +12,7 @@ import mcp
 
 from aionode.action import ActionServer
 from aionode.gateway import Assistant, Gateway, Policy
+from aionode.gateway.session.arrivals import HAS_WAITED
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -99,6 +100,26 @@ class Base(Node):
         await self.get_clock().sleep(seconds)
 
 
+class Client(mcp.Client):
+    """A client that sends a call again if it may have waited while the gateway was stalled.
+
+    On a busy computer, any call may have; a refused one was not carried out.
+
+    Attributes:
+        repeats: How often it has done so.
+    """
+
+    repeats = 0
+
+    async def call_tool(self, *arguments: Any, **options: Any) -> Any:
+        """Call a tool."""
+        while True:
+            result: Any = await super().call_tool(*arguments, **options)
+            if not result.is_error or HAS_WAITED not in result.content[0].text:
+                return result
+            self.repeats += 1
+
+
 class Bench:
     """A robot, what serves it, and clients.
 
@@ -128,7 +149,7 @@ class Bench:
         connected: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
         async def stay() -> None:
-            made = mcp.Client(self.target(), mode=mode, **options)
+            made = Client(self.target(), mode=mode, **options)
             async with made as client:
                 connected.set_result(client)
                 await self.closing.wait()

@@ -9,6 +9,7 @@ import os
 import resource
 import signal
 import sys
+import time  # noqa: TID251  # the guardian's
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, ClassVar
@@ -31,6 +32,7 @@ from aionode.system import (
     SystemLog,
     TopicPublished,
 )
+from aionode.system._guardian import Program, is_in_exec
 from aionode.system._process import ProcessMember
 from aionode.testing import settle
 from tests.support.waiting import until
@@ -121,6 +123,30 @@ async def test_what_becomes_another_program_meanwhile_is_not_lost(
         await system.wait()
 
         assert not any(alive(int(orphan.read_text())) for orphan in orphans)
+
+
+def test_a_program_is_not_gone_while_a_process_waits_in_an_exec_for_a_processor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On a busy machine that takes longer than the moment in which any stranger may be its own."""
+    now_s = 100.0
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    program = Program(1, 2, [], [], guardian=3)
+    assert program.is_left(strangers=True, in_exec=True)
+    now_s += 1.0
+
+    assert program.is_left(strangers=True, in_exec=True)
+    assert not program.is_left(strangers=True, in_exec=False)
+
+
+async def test_a_process_without_environment_is_in_no_exec() -> None:
+    """Its arguments tell; ends would wait for it otherwise."""
+    process = await asyncio.create_subprocess_exec("sleep", "999", env={})
+    try:
+        assert not is_in_exec(process.pid)
+    finally:
+        process.kill()
+        await process.wait()
 
 
 async def test_a_program_has_its_environment_and_folder_and_the_domain_of_its_system(
