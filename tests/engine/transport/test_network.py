@@ -268,6 +268,19 @@ def test_a_session_that_the_others_can_look_at_is_silent_for_long() -> None:
     assert [far[key] for key in keys] == [10_000, 4]
 
 
+def test_among_many_a_session_that_the_others_can_look_at_is_silent_for_longer() -> None:
+    """Each idle process gets the signs of life of all others."""
+    many = Neighbours(40000, tuple(range(41000, 41100)))
+    lies = Neighbours(40000, tuple(range(41000, 42000)))
+
+    leases = [
+        session_settings(Network(), (), others, is_watched=True)["transport/link/tx/lease"]
+        for others in (many, lies)
+    ]
+
+    assert leases == [3_100_000, 3_600_000]
+
+
 def test_an_id_names_its_process() -> None:
     """Others of its machine look whether it is stopped."""
     assert pid_of(new_participant()) == os.getpid()

@@ -2,7 +2,7 @@
 
 Pure functions; nothing is connected here. The settings include the intervals at which a lost router
 or peer is redialled (`RETRY`), and the time after which a silent peer is considered dead
-(`LEASE_MS`).
+(`LEASE`).
 
 Without configuration, the processes of one machine find each other over loopback: each tries to
 listen on one of three meeting ports, and dials those that are listed (`local_sessions`), other
@@ -13,7 +13,7 @@ there are three spare ones.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from msgspec import Struct
 
@@ -52,46 +52,51 @@ BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 late readers."""
 
 GOSSIPING: Final = 4
-"""Number of listed sessions whose gossip introduces sessions that are not listed, such as those of
-other programs. One is too few: Zenoh drops gossip on a connection that is just starting. If all
-gossiped, a hundred sessions would send half a million messages.
+"""Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
+those of other programs. One is too few: Zenoh drops gossip on a connection that it is just taking
+into use. With all of them a hundred would send half a million messages.
 """
 
-LEASE_MS: Final = 10_000
-"""How long a process may be silent before its peers consider it dead, in milliseconds."""
 
-LEASE_MS_EACH: Final = 500
-"""Addition to `LEASE_MS` for each process that was there when the session started, in milliseconds.
+class SessionLease(NamedTuple):
+    """The time without a sign of a process after which its peers take it for dead.
 
-When a hundred start at once, each is silent for more than ten seconds while it connects with the
-others. Peers that gave it up would connect again, and everything would take even longer.
-"""
+    Where a hundred start at once, each is silent for more than ten seconds while it is connected
+    with the others. Those that give it up connect anew, and all of it takes longer still.
 
-MOST_LEASE_MS: Final = 60_000
-"""The longest of these leases, as for ROS 2 nodes: any user of the machine can list any number of
-sessions."""
+    Attributes:
+        first_ms: For a process that starts alone, in milliseconds.
+        each_ms: Addition for each other one that was there when it started.
+        most_ms: The limit: any user of the machine can be listed as many processes.
+        keep_alives: The number of signs of life in this time.
+    """
 
-KEEP_ALIVES: Final = 4
-"""Number of keep-alive messages per lease, which is Zenoh's default."""
+    first_ms: int
+    each_ms: int
+    most_ms: int
+    keep_alives: int
 
-WATCHED_LEASE_MS: Final = 100_000
-WATCHED_KEEP_ALIVES: Final = 2
-"""The same for a session whose process the others check (`StoppedPeers`), in milliseconds.
 
-Among a hundred processes, keep-alive messages are what wakes an idle one: at these intervals of
-50 s, it wakes up 12 times a second.
+LEASE: Final = SessionLease(10_000, 500, 60_000, keep_alives=4)
+"""The limit is the lease of ROS 2 nodes."""
+
+WATCHED_LEASE: Final = SessionLease(100_000, 30_000, 3_600_000, keep_alives=2)
+"""That of a session at whose process the others look (`StoppedPeers`).
+
+Signs of life are what wakes an idle process among many. It gets one from each of the others, so
+each of many sends fewer.
 """
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
-"""Intervals at which an endpoint that does not answer is redialled."""
+"""Intervals at which an endpoint that does not answer is dialled again."""
 
 
 class Neighbours(Struct, frozen=True):
-    """The sessions of this machine, as a session sees them that is about to open.
+    """The other sessions of a machine that lists them, as one sees them that is about to open.
 
     Attributes:
-        port: The port on which it will listen.
-        others: The ports of the others, which it dials.
+        port: Where it will listen itself.
+        others: Where it dials others.
     """
 
     port: int
@@ -111,7 +116,7 @@ def session_settings(
         network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
         neighbours: What this machine lists; None if it lists nothing.
-        is_watched: Whether the others on this machine check its process.
+        is_watched: Whether the others look at its process, as far as they are on this machine.
     """
     if network.config_file is not None:
         return {}
@@ -121,9 +126,7 @@ def session_settings(
     subnet = network.discovery_range is DiscoveryRange.SUBNET
     gossip: dict[str, Any] = {"scouting/gossip/enabled": not off}
     listed = neighbours.others if neighbours is not None else ()
-    lease_ms, keep_alives = min(LEASE_MS + LEASE_MS_EACH * len(listed), MOST_LEASE_MS), KEEP_ALIVES
-    if is_watched and not network.may_reach_far:
-        lease_ms, keep_alives = WATCHED_LEASE_MS, WATCHED_KEEP_ALIVES
+    lease = WATCHED_LEASE if is_watched and not network.may_reach_far else LEASE
     if neighbours is not None:
         listen = [neighbours.port]
         dial = [*neighbours.others, network.router_port]
@@ -154,8 +157,8 @@ def session_settings(
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
         "scouting/multicast/enabled": subnet,
-        "transport/link/tx/lease": lease_ms,
-        "transport/link/tx/keep_alive": keep_alives,
+        "transport/link/tx/lease": min(lease.first_ms + lease.each_ms * len(listed), lease.most_ms),
+        "transport/link/tx/keep_alive": lease.keep_alives,
         **gossip,
         **blocked_sends.settings(),
         **half_open.settings(network),
