@@ -22,6 +22,12 @@ SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
 """Where the data of packages lies of which aionode has programs, such as launch files."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "controller_manager": {
+        "hardware_spawner": "_ros2_control.hardware_spawner",
+        "ros2_control_node": "_ros2_control.manager",
+        "spawner": "_ros2_control.spawner",
+        "unspawner": "_ros2_control.unspawner",
+    },
     "diagnostic_aggregator": {
         "add_analyzer": "_diagnostics.add_analyzer",
         "aggregator_node": "_diagnostics.aggregator_node",
@@ -159,7 +165,7 @@ REMARKS: Final[dict[str, str]] = {
         "a server of Nav2 in C++; a ROS 2 with rmw_zenoh can run it beside aionode",
     ),
     **dict.fromkeys(
-        ("controller_manager", "ros2_control", "moveit_ros_move_group", "moveit_servo"),
+        ("ros2_control", "moveit_ros_move_group", "moveit_servo"),
         "a program in C++ that loads plugins; a ROS 2 with rmw_zenoh can run it beside aionode",
     ),
     **dict.fromkeys(

@@ -1,0 +1,1 @@
+"""ros2_control: the controller manager, its hardware, its controllers, and what spawns them."""
