@@ -21,6 +21,9 @@ from aionode.programs._ros2_control.forward_command_controller import (
 )
 from aionode.programs._ros2_control.hardware import Hardware
 from aionode.programs._ros2_control.joint_state_broadcaster import JointStateBroadcaster
+from aionode.programs._ros2_control.trajectories.joint_trajectory_controller import (
+    JointTrajectoryController,
+)
 
 __all__ = ["TYPES", "Controllers"]
 
@@ -29,6 +32,7 @@ TYPES: Final[dict[str, type[Controller]]] = {
     "effort_controllers/JointGroupEffortController": JointGroupEffortController,
     "forward_command_controller/ForwardCommandController": ForwardCommandController,
     "joint_state_broadcaster/JointStateBroadcaster": JointStateBroadcaster,
+    "joint_trajectory_controller/JointTrajectoryController": JointTrajectoryController,
     "position_controllers/JointGroupPositionController": JointGroupPositionController,
     "velocity_controllers/JointGroupVelocityController": JointGroupVelocityController,
 }

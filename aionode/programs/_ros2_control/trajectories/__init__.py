@@ -1,0 +1,1 @@
+"""Trajectories of joints, and the controller that follows them."""
