@@ -130,7 +130,7 @@ BETWEEN: Final = 90.0
 MARGIN: Final = 20.0
 
 SWEEPS: Final = 8
-"""How often the vertices of each layer are sorted by their neighbours."""
+"""Number of times that the vertices of each layer are sorted by their neighbours."""
 
 Key: TypeAlias = tuple[str, str]
 

@@ -122,6 +122,6 @@ class Following:
             before = self.told.pop(participant, None)
             self.told.put(participant, msgspec.structs.replace(report, runs=[], sent=[]))
             if before is not None:
-                # Those that a context tells again take nothing from what others have lost.
+                # Items that one context repeats do not reduce what others have lost.
                 self.lost += max(sum(report.begin) - sum(before.next), 0)
         self.add(report)

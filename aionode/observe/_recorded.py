@@ -161,7 +161,7 @@ class RecordedCauses:
         self._named: RecentParts[str, list[str]] = RecentParts(MOST_ENDPOINTS)
         self._senders: RecentParts[bytes, Sender] = RecentParts(MOST_ENDPOINTS)
         self._graph = CauseRecord(0, 0)  # the latest
-        self._moment = 0, 0  # when the last one was told, by both clocks
+        self._moment = 0, 0  # the time of the last record, by both clocks
 
     def add(self, text: str) -> bool:
         """Read a text; return whether a `CauseRecorder` of this version wrote it."""

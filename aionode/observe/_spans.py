@@ -1,4 +1,4 @@
-"""Spans of OpenTelemetry for what is sent and for the callbacks that take it."""
+"""OpenTelemetry spans for sent messages and for the callbacks that receive them."""
 
 from __future__ import annotations
 

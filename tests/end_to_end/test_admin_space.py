@@ -55,7 +55,7 @@ def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
 def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two nodes with or without a link, commands of a user, and the doctor.
 
-    A router holds its routing table's lock while it answers, and takes it again for each reply:
+    A router holds its routing table's lock while it answers, and acquires it again for each reply:
     with a declaration in between, no process can join any more (zenoh 1.8 to 1.10).
     """
     monkeypatch.setenv("AIONODE_LINK", link)

@@ -1,7 +1,7 @@
-"""Parts that the programs share: sessions of Zenoh, and other processes that freeze.
+"""Helpers of the programs: sessions of Zenoh, and other processes that freeze.
 
-Each program shows one defect of Zenoh, without aionode, and fails when Zenoh no longer has it. They
-are no part of the tests: ``make zenoh-defects`` runs them.
+Each program shows one defect of Zenoh, without aionode, and fails once Zenoh no longer has it. They
+are not part of the tests: ``make zenoh-defects`` runs them.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ __all__ = [
 
 
 WAIT = "transport/link/tx/queue/congestion_control/block/wait_before_close"
-"""The setting for the time that a blocking send waits for a peer, in microseconds."""
+"""The setting for how long a blocking send waits for a peer, in microseconds."""
 
 
 def endpoint() -> str:
-    """Return an endpoint of loopback that is free."""
+    """Return a free endpoint on loopback."""
     return f"tcp/127.0.0.1:{free_ports(1)[0]}"
 
 
 def opened(settings: dict[str, Any]) -> zenoh.Session:
-    """Open a session that finds nothing by itself."""
+    """Open a session that discovers nothing by itself."""
     config = zenoh.Config()
     quiet = {"scouting/multicast/enabled": False, "listen/endpoints": []}
     for key, value in (quiet | settings).items():
@@ -64,7 +64,7 @@ def opened(settings: dict[str, Any]) -> zenoh.Session:
 
 @contextmanager
 def session(settings: dict[str, Any]) -> Iterator[zenoh.Session]:
-    """A session that is closed in the end."""
+    """Yield a session, and close it at the end."""
     with closing(opened(settings)) as one:
         yield one
 
@@ -87,7 +87,7 @@ from tests.zenoh_defects._support import *
 
 @contextmanager
 def process(program: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """A process that runs a program, and has printed a line; it is killed in the end."""
+    """Yield a process that runs a program and has printed a line; kill it at the end."""
     with subprocess.Popen(
         [sys.executable, "-c", PREAMBLE + program, *arguments],
         stdin=subprocess.PIPE,
@@ -110,7 +110,7 @@ with session(listening(sys.argv[1])) as one:
     print("open", flush=True)
     threading.Event().wait()
 """
-"""A process that listens at an endpoint, and hears everything."""
+"""A process that listens at an endpoint, and subscribes to everything."""
 
 
 def is_frozen(running: subprocess.Popen[str]) -> bool:
@@ -122,7 +122,7 @@ def is_frozen(running: subprocess.Popen[str]) -> bool:
 
 @contextmanager
 def frozen(running: subprocess.Popen[str]) -> Iterator[None]:
-    """The process stands still."""
+    """Freeze a process within the block."""
     os.kill(running.pid, signal.SIGSTOP)
     try:
         assert until(lambda: is_frozen(running))
@@ -137,7 +137,7 @@ def is_matched(publisher: zenoh.Publisher) -> bool:
 
 
 def stands_still(call: Callable[[], object], limit_s: float = 1.0) -> bool:
-    """Return whether a call takes longer than a limit; it goes on in a thread."""
+    """Return whether a call takes longer than a limit; it continues in a thread."""
     thread = threading.Thread(target=suppressed(call), daemon=True)
     thread.start()
     thread.join(limit_s)
@@ -145,7 +145,7 @@ def stands_still(call: Callable[[], object], limit_s: float = 1.0) -> bool:
 
 
 def suppressed(call: Callable[[], object]) -> Callable[[], None]:
-    """Return a call that raises no error of Zenoh: its session may be closed meanwhile."""
+    """Return a function that ignores Zenoh's errors, as its session may be closed meanwhile."""
 
     def run() -> None:
         with suppress(zenoh.ZError):
@@ -155,14 +155,14 @@ def suppressed(call: Callable[[], object]) -> Callable[[], None]:
 
 
 def sockets() -> Iterator[tuple[int, int, socket.socket]]:
-    """Yield the TCP connections of this process: their ports here and there, and a duplicate."""
+    """Yield the TCP connections of this process: local port, remote port, and a duplicate."""
     for path in Path("/proc/self/fd").iterdir():
         with suppress(OSError), socket.socket(fileno=os.dup(int(path.name))) as one:
             yield one.getsockname()[1], one.getpeername()[1], one
 
 
 def is_stuck(port: int) -> bool:
-    """Return whether a connection to a port is full, and remains so for a while."""
+    """Return whether a connection to a port is full, and stays full for a while."""
     for _ in range(4):
         time.sleep(0.01)
         if not any(queued_bytes(one) > 30_000 for _, there, one in sockets() if there == port):
@@ -171,7 +171,7 @@ def is_stuck(port: int) -> bool:
 
 
 def until(condition: Callable[[], object], limit_s: float = 4.0) -> bool:
-    """Wait until something is so; return whether it is."""
+    """Wait until a condition holds; return whether it does."""
     ends_s = time.perf_counter() + limit_s
     while not condition():
         if time.perf_counter() > ends_s:

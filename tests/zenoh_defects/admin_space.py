@@ -21,7 +21,7 @@ with session(listening(sys.argv[1]) | settings):
 
 
 def test_a_router_answers_nobody_any_more() -> None:
-    """It is asked for its admin space while others declare, for a second at most."""
+    """Its admin space is queried while others declare, for a second at most."""
     there = endpoint()
     client = dialling(there) | {"mode": "client"}
     stopped = threading.Event()

@@ -1,4 +1,4 @@
-"""A send that waits for a peer keeps others waiting that should not wait."""
+"""A send that waits for a peer makes others wait that should not."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.zenoh_defects._support import (
 
 
 def test_a_put_with_drop_waits_beside_one_with_block() -> None:
-    """For a lock that the other one holds, until the peer reads on or is lost."""
+    """It waits for a lock that the other one holds until the peer reads again or is lost."""
     there = endpoint()
     settings = dialling(there) | {WAIT: 3_000_000}
     with process(READER, there) as running, session(settings) as one:

@@ -1,4 +1,4 @@
-"""Closing a session waits for peers that take nothing, or do not answer."""
+"""Closing a session waits for peers that read nothing, or do not answer."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ os._exit(0)
 
 
 def test_close_waits_for_a_peer_that_does_not_answer() -> None:
-    """The system of that peer has accepted the connection."""
+    """The operating system of that peer has accepted the connection."""
     with (
         socket.create_server(("127.0.0.1", 0)) as silent,
         process(CLOSES, f"tcp/127.0.0.1:{silent.getsockname()[1]}") as running,
@@ -52,7 +52,7 @@ def test_close_waits_for_a_peer_that_does_not_answer() -> None:
 
 
 def test_close_waits_for_a_peer_that_takes_nothing() -> None:
-    """What is in its socket has been put with DROP."""
+    """The messages in its socket were sent with DROP."""
     there = endpoint()
     port = int(there.rpartition(":")[2])
     with process(READER, there) as running:

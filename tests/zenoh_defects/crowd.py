@@ -1,4 +1,4 @@
-"""Nothing can be put while Zenoh drops what a lost connection has announced."""
+"""Nothing can be sent while Zenoh drops the tokens of a lost connection."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ with session(dialling(sys.argv[1])) as one:
 
 
 def test_a_put_waits_while_tokens_are_dropped() -> None:
-    """For 4000 of them it takes 150 ms, where as many changes need a tenth of that."""
+    """4000 of them take 150 ms, whereas as many separate changes take a tenth of that."""
     there = endpoint()
     changes: list[object] = []
     with session(listening(there)) as one:

@@ -14,11 +14,11 @@ ONE_DIALS = {
         "peer": {"to_router": "always", "to_peer": "greater-zid"}
     }
 }
-"""Of two peers that gossip introduces, one dials."""
+"""One of two peers that gossip introduces dials the other."""
 
 
 def cut(one: zenoh.Session, other: zenoh.Session) -> None:
-    """End the connection between two sessions of this process, as a network does."""
+    """Cut the connection between two sessions of this process, as a network failure does."""
     ports = {
         (int(str(link.src).rpartition(":")[2]), int(str(link.dst).rpartition(":")[2]))
         for link in one.info.links()
@@ -30,7 +30,7 @@ def cut(one: zenoh.Session, other: zenoh.Session) -> None:
 
 
 def test_a_lost_connection_to_a_peer_that_gossip_has_named_is_not_made_anew() -> None:
-    """Both are alive, and connected with the peer that has introduced them."""
+    """Both are alive, and connected to the peer that introduced them."""
     hub = endpoint()
     with (
         session(listening(hub)) as introducer,

@@ -14,7 +14,7 @@ LIMIT_S = 4.5
 
 
 def test_a_connection_that_was_given_up_may_be_deaf() -> None:
-    """Some of many that were given up after a millisecond or two."""
+    """This happens to some of many that are given up after a millisecond or two."""
     there = endpoint()
     deaf = threading.Event()
     ends_s = time.perf_counter() + LIMIT_S

@@ -1,4 +1,4 @@
-"""A late reader that reads nothing stops the publisher whose history it has asked for."""
+"""A late reader that reads nothing blocks the publisher whose history it has requested."""
 
 from __future__ import annotations
 

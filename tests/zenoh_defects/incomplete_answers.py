@@ -1,4 +1,4 @@
-"""The answer of a peer beside a router lacks tokens that the peer itself has declared."""
+"""The answer of a peer that is connected to a router lacks tokens of the peer itself."""
 
 from __future__ import annotations
 

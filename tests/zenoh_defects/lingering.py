@@ -1,4 +1,4 @@
-"""Closing a socket may wait ten seconds for a peer that takes nothing."""
+"""Closing a socket may wait ten seconds for a peer that reads nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A session that gets no descriptor panics, instead of raising."""
+"""Opening a session without free descriptors panics instead of raising."""
 
 from __future__ import annotations
 

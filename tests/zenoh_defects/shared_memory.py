@@ -1,4 +1,4 @@
-"""A reader never gives back the shared memory of a peer that has ended."""
+"""A reader never releases the shared memory of a peer that has ended."""
 
 from __future__ import annotations
 

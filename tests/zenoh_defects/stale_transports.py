@@ -1,4 +1,4 @@
-"""A peer that reconnects to a process which has not noticed the loss is told nothing any more."""
+"""A peer that reconnects to a process that has not noticed the loss receives no declarations."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def test_a_defect_is_described(name: str) -> None:
     text = ast.get_docstring(ast.parse(source)) or ""
     titles = [line for line in text.splitlines() if line.endswith(":") and line[0] != " "]
 
-    assert titles == ["Zenoh:", "Known as:", "Seen in:", "Mend:"]
+    assert titles == ["Zenoh:", "Reported:", "Seen in:", "Workaround:"]
 
 
 @pytest.mark.parametrize("name", sorted(defects()))
@@ -45,7 +45,7 @@ def test_a_defect_has_a_switch(name: str) -> None:
     assert any(text in module.read_text(encoding="utf-8") for module in modules for text in asked)
 
 
-def test_mends_are_switched_off_by_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workarounds_are_disabled_by_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     """Zenoh's own values then stay."""
     network = network_from({})
     key, admin = "transport/shared_memory/enabled", "adminspace/enabled"

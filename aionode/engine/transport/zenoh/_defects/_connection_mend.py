@@ -1,4 +1,4 @@
-"""The common part of workarounds that act when a connection is lost or made."""
+"""The base of workarounds that act when a connection is lost or made."""
 
 from __future__ import annotations
 

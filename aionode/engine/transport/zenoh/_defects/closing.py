@@ -1,17 +1,18 @@
-"""`Session.close` waits for peers that take nothing, and for peers that do not answer.
+"""`Session.close` waits for peers that read nothing, and for peers that do not answer.
 
 Zenoh:
-    In `close`, Zenoh waits until a peer that has stopped reading reads on, or the connection is
-    lost; also until a peer has answered that it has just dialled, or that has just dialled. That
-    is ten seconds, or as long as `open_timeout` and `accept_timeout` say.
-Known as:
+    In `close`, Zenoh waits until a peer that has stopped reading continues, or its connection is
+    lost. It also waits for the answer of each peer with which it is just making a connection,
+    whoever dialled. That takes ten seconds, or as long as `open_timeout` and `accept_timeout`
+    allow.
+Reported:
     https://github.com/eclipse-zenoh/zenoh/issues/2675
 Seen in:
     1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
-Mend:
-    Such connections are cut: those that are seen before `close` by `cut_stuck`, and those that are
-    made meanwhile by `cut_unanswered`. On Linux only: elsewhere `close` takes as long as Zenoh
-    waits, in a thread.
+Workaround:
+    Such connections are cut: existing ones by `cut_stuck` before `close`, and those made meanwhile
+    by `cut_unanswered`. This works on Linux only; elsewhere `close` takes as long as Zenoh waits,
+    in a thread.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
 """The address families of connections between hosts."""
 
 STUCK_S: Final = 0.1
-"""A peer that reads not a single byte for this long, while some are pending, is not waited for; in
+"""How long a peer may leave pending bytes unread before nothing waits for it any more, in
 seconds."""
 
 RESET: Final = struct.pack("ii", 1, 0)

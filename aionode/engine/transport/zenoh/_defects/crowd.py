@@ -1,18 +1,18 @@
-"""Nothing can be sent while Zenoh drops what a lost connection has announced.
+"""Nothing can be sent while Zenoh drops the tokens of a lost connection.
 
 Zenoh:
-    When a connection ends, Zenoh drops all tokens that came over it in one piece, with a lock that
-    every `put` needs. For each token it goes through the list of all tokens that a subscriber of
-    tokens matches, so the time grows with the square: about 10 ms for 1,000 tokens, 40 ms for
-    2,000, 240 ms for 5,000.
-Known as:
-    Not reported.
+    When a connection ends, Zenoh drops all tokens that came over it at once, and holds a lock that
+    every `put` needs. For each token it searches the list of all tokens that a subscriber of
+    tokens matches, so the time grows quadratically: about 10 ms for 1,000 tokens, 40 ms for 2,000,
+    240 ms for 5,000.
+Reported:
+    No.
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
-    While others have announced more than `is_crowd` allows, the event loop puts nothing:
-    `AnnouncedLimit` counts, and `_control_messages`, `_peer_senders` and `_publisher` have threads
-    put.
+Workaround:
+    While others have announced more tokens than `is_crowd` allows, the event loop sends nothing
+    through Zenoh: `AnnouncedLimit` counts them, and `control_messages`, `peer_senders` and
+    `publisher` send from threads.
 """
 
 from __future__ import annotations
@@ -28,5 +28,5 @@ CROWDED: Final = 2_000
 
 
 def is_crowd(tokens: int) -> bool:
-    """Return whether others have announced so many tokens that the event loop must not put."""
+    """Return whether others have announced so many tokens that only threads may send."""
     return tokens > CROWDED and is_mended("crowd")

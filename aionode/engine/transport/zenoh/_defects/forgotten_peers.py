@@ -1,21 +1,22 @@
-"""A peer named once by gossip is dialled once: a lost connection to it is not re-established.
+"""A peer that gossip has named is dialled once: a lost connection to it is not re-established.
 
 Zenoh:
-    Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only
-    when gossip names it again. A router or a peer gossips when it is connected anew, and only then:
-    3 ms after a process that was frozen has lost that connection, and perhaps before it has noticed
-    the loss of others. Those are named too early, and never again.
-Known as:
-    Not reported.
+    Zenoh keeps redialling the endpoints of its configuration, but redials a peer that gossip has
+    named only when gossip names it again. Routers and peers gossip only when they are connected.
+    After a freeze, a process reconnects to its gossip source within 3 ms of losing that connection,
+    perhaps before it has noticed that it has lost others. Those are named too early, and never
+    again.
+Reported:
+    No.
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
-    After the loss of a connection, the tokens that this session sees are compared with those that
-    its gossip source (a router, or the peer at a configured endpoint) sees: a probe asks for them.
-    If that source sees a participant that this session does not, or to which it has lost the
-    connection, or does not see this session, the connection to the source is cut, and Zenoh makes
-    it anew at once: the source names all others again. Where no session is connected but those that
-    this machine lists, nothing is compared: each has the earlier ones in its configuration.
+Workaround:
+    After the loss of a connection, a probe asks the gossip source (a router, or the peer at a
+    configured endpoint) which tokens it sees, and they are compared with those of this session. If
+    the source sees a participant that this session does not see or has lost, or if it does not see
+    this session, the connection to the source is cut. Zenoh re-establishes it at once, and the
+    source names all others again. If only sessions that this machine lists are connected, nothing
+    is compared: each has the earlier ones in its configuration.
 """
 
 from __future__ import annotations
@@ -66,8 +67,8 @@ FIRST_S: Final = 0.5
 milliseconds."""
 
 AGAIN_S: Final = 3.0
-"""The interval of further comparisons, in seconds: a process that was frozen returns without any
-notification."""
+"""The interval of further comparisons, in seconds: there is no event when a frozen process
+continues."""
 
 WATCH_S: Final = 120.0
 """How long comparisons are repeated after the last loss of a connection, in seconds."""
@@ -169,8 +170,8 @@ class Recovery(ConnectionMend):
         self._is_comparing = start_thread(
             threading.Thread(
                 target=self._compare_in_thread,
-                # Of those that are lost, a router may forward what they send, but not always what
-                # this session sends.
+                # A router may forward what lost participants send, but not always what this
+                # session sends.
                 args=(session, self._state.connections.lost.copy(), known),
                 name="aionode-zenoh",
             )
@@ -202,8 +203,8 @@ class Recovery(ConnectionMend):
     ) -> set[str]:
         """Cut what has to be re-established, and return the participants concerned."""
         apart, is_sure = self._missing(session, connection, lost, known)
-        # Where many start at once, connecting takes seconds, and a cut prolongs it: a participant
-        # that was never connected must be missing in two consecutive comparisons.
+        # If many start at once, connecting takes seconds, and a cut prolongs it: a participant that
+        # was never connected must be missing in two consecutive comparisons.
         missing = apart & (lost | self._suspected)
         if is_sure:
             missing |= apart & {self._state.participant}
@@ -219,11 +220,11 @@ class Recovery(ConnectionMend):
     def _missing(
         self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
     ) -> tuple[set[str], bool]:
-        """Return the participants that are not connected as they should be.
+        """Return the participants that should be connected and are not, and whether that is sure.
 
-        Those that only the gossip source sees, lost ones that it sees and that are not connected
-        here, and this one if the gossip source does not see it. Besides, whether the last is sure:
-        the gossip source sees all others that are connected with both.
+        These are the ones that only the gossip source sees, lost ones that it sees and that are not
+        connected here, and this one if the gossip source does not see it. The last is sure if the
+        gossip source sees all others that are connected with both.
 
         Raises:
             TimeoutError: an answer is not complete.
@@ -231,27 +232,28 @@ class Recovery(ConnectionMend):
         keys = participants(self._state)
         connected = {str(transport.zid) for transport in session.info.transports()}
         common = {token for token in known if participant_of(token) in connected - lost}
-        # An answer may lack nothing but the tokens of this context: it is asked for them, too.
+        # An answer could lack only the tokens of this context, so they are expected as well.
         own = {token for token in known if participant_of(token) == self._state.participant}
         there = seen_at(self._network, connection, *keys, expected=common | own)
         here = tokens(session, *keys, expected=known)
         if not known <= here:
             raise TimeoutError(f"{len(known - here)} tokens that are known were not named")
-        # A session sees all tokens of its own: one that is named only there was just undeclared, or
-        # the answer here lacks it.
+        # A session sees all of its own tokens: one that only the source names was just undeclared,
+        # or the answer here lacks it.
         unseen = {participant_of(token) for token in there - here} - {self._state.participant}
         unconnected = {participant_of(token) for token in there} & (lost - connected)
         missing = unseen | unconnected | {participant_of(token) for token in own - there}
         return missing, common <= there
 
     def _take_comparison(self, missing: set[str] | None) -> None:
-        """Take what a comparison has shown to be missing; None if it could not be made."""
+        """Handle the result of a comparison: the missing participants; None if it has failed."""
         self._is_comparing = False
         if self._session is None:
             return
         if missing is not None:
-            # A source that was just connected anew may not name all others yet: one that is not
-            # named is back only if it is connected, and this context if it is seen again.
+            # A source whose connection was just re-established may not name all others yet. One
+            # that it does not name is back only if it is connected; this context is back once the
+            # source sees it.
             back = self._state.connections.kinds.keys() | {self._state.participant}
             self._attempts = {
                 zid: count
@@ -260,8 +262,8 @@ class Recovery(ConnectionMend):
             } | {zid: self._attempts.get(zid, 0) + 1 for zid in missing}
         if missing:
             logger.info(
-                "lost touch with running processes %s; cutting connections, so that Zenoh makes "
-                "them anew",
+                "lost touch with running processes %s; cutting connections, so that Zenoh "
+                "reconnects",
                 ", ".join(sorted(missing)[:5]),
             )
         if self._checks:
@@ -284,7 +286,7 @@ def seen_at(
     Args:
         network: The settings of the context.
         connection: The connection.
-        *keys: What is asked for.
+        *keys: The key expressions to query.
         expected: As for `tokens`.
         timeout_s: How long each answer may take.
 
@@ -300,12 +302,12 @@ def nodes_at_gossip_source(
 ) -> set[str] | None:
     """Return the tokens of all nodes that a gossip source sees, if there is one.
 
-    None if it does not answer, or not completely.
+    None if it does not answer completely.
 
     Args:
-        session: The session, which is connected with a gossip source or not.
+        session: The session, which may be connected with a gossip source.
         network: The settings of the context.
-        known: The tokens of nodes that are known; without them an answer may not be complete.
+        known: The tokens of known nodes; an answer without them is incomplete.
     """
     try:
         connection = gossip_source(session, network)

@@ -1,16 +1,17 @@
 """Undeclaring a publisher with heartbeats may stop all Python threads for ten seconds.
 
 Zenoh:
-    `undeclare` of an AdvancedPublisher waits with the GIL held for the task that sends its
-    heartbeats. If a subscriber of the same process hears these in a callback that Zenoh's thread
+    `undeclare` of an AdvancedPublisher holds the GIL while it waits for the task that sends its
+    heartbeats. If a subscriber of the same process receives these in a callback that Zenoh's thread
     calls directly, that task waits for the GIL, until Zenoh gives up after ten seconds.
-Known as:
-    Not reported.
+Reported:
+    No.
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
-    Publishers of histories have no heartbeats (`declare_keeping` in `_kept_history`). Heartbeats
-    would tell readers of a missing last message too: `_acknowledgements` do so for KEEP_ALL.
+Workaround:
+    Publishers with a history have no heartbeats (`declare_keeping` in `kept_history`). Heartbeats
+    would also tell readers that the last message is missing: `acknowledgements` does so for
+    KEEP_ALL.
 """
 
 from __future__ import annotations

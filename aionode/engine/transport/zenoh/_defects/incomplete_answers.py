@@ -1,16 +1,16 @@
-"""The answer of a peer beside a router may lack tokens, even all of them.
+"""The answer of a peer that is connected to a router may lack tokens, even all of them.
 
 Zenoh:
-    A peer that is asked for tokens names them in one thread, and in another passes on that the
-    answer of its router has ended, which may come first. Then the query ends, and the rest is
-    dropped: one answer of ten lacked tokens, and mostly all of 300.
-Known as:
-    Not reported.
+    A peer that is queried for tokens sends them from one thread, and passes on the end of its
+    router's answer from another, which may be faster. Then the query ends, and the rest is dropped:
+    one answer in ten lacked tokens, mostly all 300 of them.
+Reported:
+    No.
 Seen in:
     1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
-Mend:
-    A session is asked again while tokens that are known are missing (`tokens`). An answer that
-    lacks them in the end counts for nothing (`forgotten_peers`, `_graph_watcher`).
+Workaround:
+    A session is queried again while known tokens are missing (`tokens`). An answer that still lacks
+    them in the end is ignored (`forgotten_peers`, `graph_watcher`).
 """
 
 from __future__ import annotations
@@ -71,6 +71,6 @@ def tokens(
 def answer(session: zenoh.Session, key: str, timeout_s: float) -> Iterator[str]:
     """Yield the tokens that match one key and are named in one answer."""
     for reply in session.liveliness().get(key, timeout=timeout_s):
-        if reply.ok is None:  # the time is up
+        if reply.ok is None:  # the query timed out
             raise TimeoutError(f"{key}: not all tokens were named within {timeout_s:g} s")
         yield str(reply.ok.key_expr)

@@ -1,17 +1,16 @@
-"""Zenoh's thread that closes a connection waits up to ten seconds for a peer that takes nothing.
+"""The Zenoh thread that closes a connection waits up to ten seconds for a peer that reads nothing.
 
 Zenoh:
-    Zenoh sets SO_LINGER to ten seconds on each TCP socket. `close` of a socket whose peer has not
-    taken everything waits for so long, and with it the thread of Zenoh that closes the connection,
-    which may be the only one that sends or connects for this process.
-Known as:
-    Not reported.
+    Zenoh sets SO_LINGER to ten seconds on each TCP socket. If the peer has not read everything,
+    `close` waits that long, and with it the Zenoh thread that closes the connection, which may be
+    the only one that sends or connects for this process.
+Reported:
+    No.
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
+Workaround:
     `SocketOptions` switches SO_LINGER off soon after a connection was made: nothing is lost, as the
-    system goes on sending. It sets the time limit of `blocked_sends` in the same call. On Linux
-    only.
+    system keeps sending. At the same time it sets the time limit of `blocked_sends`. On Linux only.
 """
 
 from __future__ import annotations
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
 __all__ = ["SocketOptions"]
 
 UNREACHABLE_MS: Final = 5_000
-"""Time without any acknowledgement of sent bytes after which a connection to another machine is
-lost, in milliseconds."""
+"""How long sent bytes may stay unacknowledged before a connection to another machine is lost, in
+milliseconds."""
 
 SETTLE_S: Final = 0.5
 """Delay before looking for sockets after a new connection, in seconds; several come at once."""

@@ -1,14 +1,14 @@
-"""Zenoh panics, or aborts the process, if the system lacks what a session needs.
+"""Zenoh panics, or aborts the process, if it gets no descriptors or threads for a session.
 
 Zenoh:
-    It does so in a thread of its own if it gets no descriptor or no thread while it opens a
-    session, and no exception comes of it that says why.
-Known as:
-    Not reported.
+    It panics in a thread of its own if it gets no descriptor or no thread while it opens a session,
+    so no exception says why.
+Reported:
+    No.
 Seen in:
     1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
-Mend:
-    `refuse_scarcity` looks before a session is opened, and raises.
+Workaround:
+    `refuse_scarcity` checks before a session is opened, and raises.
 """
 
 from __future__ import annotations

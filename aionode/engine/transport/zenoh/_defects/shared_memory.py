@@ -1,16 +1,16 @@
-"""A reader never gives back the shared memory of a peer that has ended.
+"""A reader never releases the shared memory of a peer that has ended.
 
 Zenoh:
     A process that reads shared memory keeps each segment that it has attached, with two descriptors
-    and two mappings, until it ends: 1000 restarts of a publisher are 2000 descriptors.
-Known as:
+    and two mappings, until it ends: 1000 restarts of a publisher leave 2000 descriptors.
+Reported:
     https://github.com/eclipse-zenoh/zenoh/issues/2787,
     https://github.com/eclipse-zenoh/zenoh/issues/1700
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
-    Zenoh's shared memory is off. Links have shared memory of their own; processes of other users
-    cannot open Zenoh's, and ROS 2 nodes have it switched off.
+Workaround:
+    Zenoh's shared memory is switched off. Links have their own; processes of other users cannot
+    open Zenoh's, and ROS 2 nodes have it switched off.
 """
 
 from __future__ import annotations
@@ -21,5 +21,5 @@ __all__ = ["settings"]
 
 
 def settings() -> dict[str, object]:
-    """Return the settings of sessions and routers that mend this."""
+    """Return settings of sessions and routers that work around this."""
     return {"transport/shared_memory/enabled": False} if is_mended("shared_memory") else {}

@@ -1,16 +1,16 @@
 """A peer that reconnects to a process that has not noticed the loss receives no declarations.
 
 Zenoh:
-    A process that was frozen may accept a new connection while it still reads what came over the
-    old one. Zenoh takes the new one for another link of the same transport, and declares nothing on
-    it: the peer never sees a token or a subscription of that process again.
-Known as:
+    A process that was frozen may accept a new connection while it still reads from the old one.
+    Zenoh treats the new one as another link of the same transport, and declares nothing on it: the
+    peer never sees a token or a subscription of that process again.
+Reported:
     https://github.com/eclipse-zenoh/zenoh/issues/2806
 Seen in:
     1.8.0, 1.9.0, 1.10.2
-Mend:
-    A participant of aionode always has a token. If the tokens of one whose connection was made anew
-    do not come, `StaleTransports` cuts its connections, so that Zenoh makes them anew.
+Workaround:
+    A participant that uses aionode always has a token. If the tokens of one do not arrive after its
+    connection was re-established, `StaleTransports` cuts its connections, so that Zenoh reconnects.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ PEERS_PER_SECOND: Final = 20
 """Number of connected peers whose tokens may take a second: all of them may have returned."""
 
 FEW: Final = 3
-"""Number of participants without tokens from which on they may be slow, and get more time."""
+"""From this number of participants without tokens on, they get more time, as they may be slow."""
 
 
 class StaleTransports(ConnectionMend):
@@ -98,7 +98,7 @@ class StaleTransports(ConnectionMend):
         if session is None:
             return
         self._returned &= acknowledgements.participants - acknowledgements.present
-        # Where many connect at once, tokens take longer, and a cut slows down everything further.
+        # When many connect at once, tokens take longer, and a cut slows everything down further.
         declared_s = self._declared_s()
         wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
         if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
@@ -115,7 +115,7 @@ class StaleTransports(ConnectionMend):
             self._check_in(declared_s)
             logger.info(
                 "processes %s are connected but declare nothing; cutting their connections, so "
-                "that Zenoh makes them anew",
+                "that Zenoh reconnects",
                 ", ".join(sorted(silent)[:5]),
             )
             start_thread(

@@ -10,14 +10,14 @@ if TYPE_CHECKING:
 __all__ = ["SharedPayload", "SharedPayloads"]
 
 SHARED_BYTES: Final = 1 << 16
-"""Size from which a payload is kept for the other subscriptions."""
+"""Size from which a payload is kept for the other subscriptions, in bytes."""
 
 
 class SharedPayload:
-    """The last large payload of a key, until all subscriptions of the key have taken it.
+    """The last large payload of a key, until all subscriptions of the key have read it.
 
-    Zenoh passes each message to every subscription, one right after the other. One that does not
-    take it leaves it here until the next message: at most one payload for each key.
+    Zenoh passes each message to every subscription, one right after the other. If one does not read
+    it, it stays here until the next message: at most one payload for each key.
 
     Attributes:
         readers: The number of subscriptions.

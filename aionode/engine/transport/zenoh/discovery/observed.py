@@ -1,4 +1,4 @@
-"""Questions of tools to all contexts: what each counts, and who does not answer."""
+"""Queries of tools to all contexts: what each counts, and which do not answer."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ __all__ = ["Observed"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LINKS: Final = "links"
-"""The end of a key on which contexts without reports answer as well."""
+"""The end of a key on which contexts without reports answer too."""
 
 OLDER_S: Final = 0.2
-"""Time for which those that have sent no report are asked whether they are there, in seconds."""
+"""How long contexts that have sent no report are asked whether they are alive, in seconds."""
 
 MOST_BYTES: Final = 64 << 20
-"""What is kept of all answers to one question, in bytes."""
+"""Maximum size of all answers to one query that are kept, in bytes."""
 
 ANSWER_BYTES: Final = 1000
-"""What an answer costs beside its payload, in bytes."""
+"""What an answer takes besides its payload, in bytes."""
 
 
 class Observed:
-    """Answers tools of other processes, and asks them; does nothing before somebody asks.
+    """Answers queries of tools in other processes, and sends such queries; idle otherwise.
 
     Attributes:
-        answers: What this context tells, by the end of the key on which it is asked.
+        answers: The functions that answer, by the end of the key that is queried.
     """
 
     def __init__(self, state: SessionState, peer_directory: ZenohPeerDirectory) -> None:
@@ -64,7 +64,7 @@ class Observed:
                 self._declared.append(session.declare_queryable(key, direct(self._queries.put)))
 
     def stop(self) -> None:
-        """Answer no more."""
+        """Stop answering."""
         self._answering.abandon()
         declared, self._declared = self._declared, []
         for each in declared:
@@ -75,7 +75,7 @@ class Observed:
         return f"{self._prefix}{participant}/{what}"
 
     def _take_query(self, query: zenoh.Query) -> None:
-        """Answer, from a thread: the one who asks may be stalled."""
+        """Answer from a thread, as the tool that asks may be stalled."""
         asked = str(query.key_expr).rpartition("/")[2]
         payload = query.payload
         question = b"" if payload is None else payload.to_bytes()
@@ -112,7 +112,7 @@ class Observed:
         missing = asked - told.keys()
         if not missing:
             return {**told}
-        # Those that do not know the question answer here, so that only others count as silent; and
+        # Contexts that do not know the query answer here, so that only others count as silent; and
         # one that was just found may not have been asked.
         older, again = await asyncio.gather(
             self._all_answers(session, [self._key("*", LINKS)], OLDER_S),
@@ -135,7 +135,7 @@ class Observed:
     async def _answers(
         self, session: zenoh.Session, key: str, timeout_s: float, question: bytes
     ) -> dict[str, bytes]:
-        """Return what each context answers on one key; what is too much counts as no answer."""
+        """Return what each context answers on one key; an answer that is too large counts as none."""
         found: dict[str, bytes] = {}
         room = MOST_BYTES
         ended = asyncio.Event()

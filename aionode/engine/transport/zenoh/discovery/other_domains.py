@@ -1,4 +1,4 @@
-"""Looking into other domains: on this machine, and wherever a router joins them."""
+"""Finds other domains: on this machine, and wherever a router connects them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ ANSWER_S: Final = 1.0
 """Timeout for the tokens of connected sessions, in seconds; they take milliseconds."""
 
 MAX_DOMAINS: Final = 100
-"""Number of other domains that are returned."""
+"""Maximum number of domains to return."""
 
 
 def other_domains(session: zenoh.Session, network: Network) -> frozenset[int]:
     """Return the other domains that have processes on this machine or nodes within reach.
 
-    Processes of other domains are not connected, so this machine's are found in its list of
-    sessions. Routers, and settings with which domains meet, bring nodes of other domains within
+    Processes of different domains are not connected, so those on this machine are found in its list
+    of sessions. Routers, and settings with which domains meet, bring nodes of other domains within
     reach; hidden nodes, such as the daemon of ``ros2``, do not count. Blocks for up to a second.
 
     Returns:
@@ -48,5 +48,5 @@ def other_domains(session: zenoh.Session, network: Network) -> frozenset[int]:
 
 
 def is_missed(info: NodeInfo | EndpointInfo) -> bool:
-    """Return whether a token is that of a node that somebody may look for."""
+    """Return whether a token belongs to a node that somebody may be looking for."""
     return isinstance(info, NodeInfo) and not is_hidden(info.fully_qualified_name)

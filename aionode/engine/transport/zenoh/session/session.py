@@ -286,7 +286,7 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         )
         dialled = sorted(others | (unlisted & set(network.meeting_ports)))
         neighbours = Neighbours(port, tuple(dialled))
-        # Routers cannot look, and tell other machines of it.
+        # Routers cannot check processes, and announce them to other machines.
         has_router = network.router_port in unlisted or bool(network.far_peers)
         is_watched = pid_of(participant) is not None and not has_router
         settings = session_settings(network, (), neighbours, is_watched=is_watched)
