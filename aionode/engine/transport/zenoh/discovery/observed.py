@@ -135,7 +135,7 @@ class Observed:
     async def _answers(
         self, session: zenoh.Session, key: str, timeout_s: float, question: bytes
     ) -> dict[str, bytes]:
-        """Return what each context answers on one key; an answer that is too large counts as none."""
+        """Return what each context answers on one key; one that is too large counts as none."""
         found: dict[str, bytes] = {}
         room = MOST_BYTES
         ended = asyncio.Event()
