@@ -66,7 +66,7 @@ CallHandler = Callable[[int, int, int, bytes, bytes | memoryview, int], None]
 the `perf_ns` deadline for running callbacks inline.
 """
 
-VERSION: Final = 4
+VERSION: Final = 5
 """Version of this format; only contexts with equal versions can be linked."""
 
 GID_SIZE: Final = 16

@@ -179,6 +179,7 @@ class ZenohTransport(Transport):
         self._state.waker.open(asyncio.get_running_loop())
         # Before waiting for others, so that peers connecting meanwhile see everything. After a
         # failure from here on, `close` closes the session.
+        self.peer_directory.announce(session)
         self._state.connect(session, graph)
         self._state.connections.start(session)
         self._socket_options = SocketOptions(session)

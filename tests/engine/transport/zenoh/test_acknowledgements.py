@@ -18,6 +18,7 @@ import zenoh  # noqa: TID251  # plays another process, without aionode
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.engine.context import Context
+from aionode.engine.transport.link._listener import Listener
 from aionode.engine.transport.reliability import stateful_writer
 from aionode.engine.transport.reliability import submessage as acknack
 from aionode.engine.transport.reliability.stateful_reader import StatefulReader
@@ -173,6 +174,70 @@ async def test_what_is_lost_on_the_way_is_sent_again(
         assert heard == list(range(300))
         assert subscription.stats.lost == 0
         assert publisher.stats.dropped == 0
+
+
+@pytest.fixture
+def near(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contexts have links, as on one host, but cannot use them."""
+    monkeypatch.delenv("AIONODE_LINK")
+    monkeypatch.setattr(Listener, "dial", lambda *_: None)
+
+
+@pytest.mark.usefixtures("near")
+async def test_what_is_lost_between_near_contexts_is_sent_again(
+    monkeypatch: pytest.MonkeyPatch, writers: Writers
+) -> None:
+    """As between any others; here every third message is lost, including the last one."""
+    put, count = ZenohSender.put, 0
+
+    def put_some(self: ZenohSender, payload: bytes, extra: bytes) -> None:
+        nonlocal count
+        count += 1
+        if count % 3:
+            put(self, payload, extra)
+
+    monkeypatch.setattr(ZenohSender, "put", put_some)
+    async with two_nodes() as (a, b):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        subscription = b.create_subscription(Int32, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for number in range(300):
+            publisher.publish(Int32(data=number))
+        heard = [(await subscription.receive()).data for _ in range(300)]
+        await until(writers["/n"].is_done)
+
+        assert heard == list(range(300))
+        assert list(publisher.stats.routes.values()) == ["zenoh"]
+
+
+@pytest.mark.usefixtures("near")
+@pytest.mark.parametrize("side", ["pub", "sub"])
+async def test_keys_of_topics_wait_for_a_context_that_is_not_near(side: str) -> None:
+    """Every process of the domain keeps them, and near contexts use one for all topics."""
+    async with two_nodes() as (a, b):
+        with raw_session() as session:
+            publisher = a.create_publisher(Int32, "n", 10)
+            subscription = b.create_subscription(Int32, "n", None, 10)
+            await publisher.wait_for_subscribers()
+            publisher.publish(Int32(data=1))
+            await subscription.receive()
+            data: Any = session.declare_publisher(f"{DOMAIN_ID}/n/*/*")
+            keys: Any = session.declare_publisher(f"{DOMAIN_ID}/n/*/*/@aionode/{side}/*")
+            await until(lambda: data.matching_status.matching)
+            before = keys.matching_status.matching
+
+            async with Context(link=False):
+                await until(lambda: keys.matching_status.matching)
+    assert not before
+
+
+async def test_a_context_of_another_user_is_not_near() -> None:
+    """It can be linked with those of its own user only."""
+    state = SessionState("a1", DOMAIN_ID)
+    state.acknowledgements.note_links("b2", is_near=False, present=True)
+    state.acknowledgements.note_links("c3", is_near=True, present=True)
+
+    assert state.acknowledgements.near == {"c3"}
 
 
 @asynccontextmanager

@@ -7,6 +7,10 @@ them declares a token; for readers in other contexts, Zenoh is relied on (`publi
 
 A submessage only counts for endpoints of the topic on whose key it came: a process that may publish
 on one topic cannot speak for another.
+
+Contexts that can be linked, of the same user and host, are near. Links bypass the rules for topics
+anyway, so near contexts use one key for all topics. The keys of topics, which every process keeps,
+are declared only once there is a context that is not near.
 """
 
 from __future__ import annotations
@@ -44,6 +48,10 @@ TICK_S: Final = 0.05
 PROBE_S: Final = 1.0
 """The interval of `probe` for publishers that must know whether their readers answer, in
 seconds."""
+
+FAR_S: Final = 0.1
+"""When a context that acknowledges, but has announced no links, counts as one without, in seconds:
+it announces them first, but Zenoh does not keep the order for those that connect later."""
 
 LIMIT: Final = 20_000
 """Number of submessages that may wait for the loop; dropped ones will be repeated."""
@@ -109,6 +117,7 @@ class Acknowledgements:
     Attributes:
         participants: The other contexts that acknowledge, including the last `GONE` that left.
         present: Those of them whose tokens exist.
+        near: The contexts of the same user and host with links.
     """
 
     def __init__(
@@ -125,6 +134,7 @@ class Acknowledgements:
         self._gone: Recent[str, str] = Recent(GONE)
         self._announced = announced
         self.present: set[str] = set()
+        self.near: set[str] = set()
         # By gid, below the key of their topic: a submessage counts for no endpoint of another
         # topic.
         self._writers: ControlSubscribers[Receive] = ControlSubscribers(
@@ -139,7 +149,12 @@ class Acknowledgements:
         self._control_messages = control_messages
         self._prefix = f"{PREFIX}/{domain_id}/"
         self._suffix = f"/reliable/{VERSION}"
-        self._is_open = False
+        self._near_queue = ThreadsafeQueue(waker, self._receive_from_near, LIMIT)
+        # The endpoints of all topics, by gid: those to which each side of a topic sends.
+        self._near_endpoints: dict[Side, dict[bytes, Receive]] = {side: {} for side in Side}
+        self._far_check = Later()
+        self._listens_to_far = False
+        self._session: zenoh.Session | None = None
         self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
         self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._receive_token)
         self._ticks = Repeater(TICK_S)
@@ -147,9 +162,7 @@ class Acknowledgements:
 
     def start(self, session: zenoh.Session) -> None:
         """Declare the token. Must be called before any endpoint is declared."""
-        self._is_open = True
-        self._writers.start(session)
-        self._readers.start(session)
+        self._session = session
         liveliness = session.liveliness()
         own = self.token_of(self._participant)
         with translated("acknowledgements"):
@@ -160,17 +173,47 @@ class Acknowledgements:
                 liveliness.declare_token(own),
             ]
 
+    def listen(self, *, has_links: bool) -> None:
+        """Subscribe to submessages, after `start`.
+
+        Args:
+            has_links: Whether this context can be linked with others; if so, the keys of topics
+                wait for one that is not near.
+        """
+        if self._session is None:
+            return
+        if not has_links:
+            self._listen_to_far()
+            return
+        key = self._near_key(self._participant)
+        with translated(key):
+            self._declared.append(
+                self._session.declare_subscriber(
+                    key, direct(self._near_queue.put), allowed_origin=zenoh.Locality.REMOTE
+                )
+            )
+
+    def _listen_to_far(self) -> None:
+        if self._session is not None and not self._listens_to_far:
+            self._listens_to_far = True
+            self._writers.start(self._session)
+            self._readers.start(self._session)
+
     def stop(self) -> None:
         """Undeclare everything."""
-        self._is_open = False
+        self._session = None
+        self._listens_to_far = False
+        self._far_check.cancel()
         self._writers.stop()
         self._readers.stop()
         declared, self._declared = self._declared, []
         for declaration in reversed(declared):
             declaration.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._tokens.clear()
+        self._near_queue.clear()
         self.participants.clear()
         self.present.clear()
+        self.near.clear()
         self._gone.clear()
         self._ticks.clear()
         self._probes.clear()
@@ -185,20 +228,24 @@ class Acknowledgements:
 
     def add_writer(self, key: str, gid: bytes, receive: Receive) -> None:
         """Pass the ACKNACKs of its readers to a publisher; idempotent."""
+        self._near_endpoints[Side.SUBSCRIPTIONS][gid] = receive
         self._writers.listen(
             submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, receive
         )
 
     def remove_writer(self, key: str, gid: bytes) -> None:
         """Stop passing ACKNACKs to a publisher."""
+        self._near_endpoints[Side.SUBSCRIPTIONS].pop(gid, None)
         self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
 
     def add_reader(self, key: str, gid: bytes, receive: Receive) -> None:
         """Pass the submessages of its writers to a subscription; idempotent."""
+        self._near_endpoints[Side.PUBLISHERS][gid] = receive
         self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, receive)
 
     def remove_reader(self, key: str, gid: bytes) -> None:
         """Stop passing submessages to a subscription."""
+        self._near_endpoints[Side.PUBLISHERS].pop(gid, None)
         self._readers.unlisten(submessage_key(key, Side.PUBLISHERS, self._participant), gid)
 
     def send(self, key: str, side: Side, participant: str, data: bytes) -> None:
@@ -210,16 +257,31 @@ class Acknowledgements:
             participant: The context that receives it.
             data: The submessage.
         """
-        self._control_messages.put(submessage_key(key, side, participant), data)
+        is_near = participant in self.near
+        self._control_messages.put(
+            self._near_key(participant) if is_near else submessage_key(key, side, participant), data
+        )
+
+    def _near_key(self, participant: str) -> str:
+        return f"{self._prefix}{participant}/near"
+
+    def note_links(self, participant: str, *, is_near: bool, present: bool) -> None:
+        """Record that another context announces links, or does not any more."""
+        if present and is_near:
+            self.near.add(participant)
+        elif present:
+            self._listen_to_far()
+        elif participant not in self.present:  # otherwise it is about to go, or to come back
+            self.near.discard(participant)
 
     def watch(self, tick: Callable[[], bool]) -> None:
         """Call `tick` of an endpoint that waits for something, until it returns False."""
-        if self._is_open:
+        if self._session is not None:
             self._ticks.add(tick)
 
     def probe(self, probe: Callable[[], bool]) -> None:
         """Call `probe` of a publisher from now on, until it returns False."""
-        if self._is_open:
+        if self._session is not None:
             self._probes.add(probe)
 
     def _receive_acknack(self, sample: zenoh.Sample, writers: dict[Hashable, Receive]) -> None:
@@ -235,6 +297,17 @@ class Acknowledgements:
             receive = readers.get(submessage.reader)
             if receive is not None:
                 receive(submessage)
+
+    def _receive_from_near(self, sample: zenoh.Sample) -> None:
+        submessage = self._unpack(sample)
+        if submessage is None:
+            return
+        is_acknack = submessage.kind is SubmessageKind.ACKNACK
+        side = Side.SUBSCRIPTIONS if is_acknack else Side.PUBLISHERS
+        gid = submessage.writer if is_acknack else submessage.reader
+        receive = self._near_endpoints[side].get(gid)
+        if receive is not None:
+            receive(submessage)
 
     def _unpack(self, sample: zenoh.Sample) -> Submessage | None:
         submessage = unpack(sample.payload.to_bytes())
@@ -255,6 +328,7 @@ class Acknowledgements:
             oldest = self._gone.put(participant, participant)
             if oldest is not None:
                 self.participants.discard(oldest)
+                self.near.discard(oldest)
 
     def _note_present(self, participant: str, key: str) -> None:
         if participant in self.present or not self._announced.admit(participant, key):
@@ -264,6 +338,12 @@ class Acknowledgements:
         if participant not in self.participants:
             self.participants.add(participant)
             self._on_participant(participant)
+        if self._session is not None and not (self._listens_to_far or self._far_check.waits):
+            self._far_check.call(FAR_S, self._check_far)
+
+    def _check_far(self) -> None:
+        if self.present - self.near:
+            self._listen_to_far()
 
 
 def submessage_key(key: str, side: Side, participant: str) -> str:

@@ -97,17 +97,29 @@ class ZenohPeerDirectory:
         self._answering = SendThread("aionode-links", state.waker)
         self._session: zenoh.Session | None = None
 
-    def start(self, session: zenoh.Session) -> None:
-        """Declare the token, and subscribe to those of others; existing ones arrive immediately.
+    def announce(self, session: zenoh.Session) -> None:
+        """Declare the token, if there is one.
 
-        Without links, there is nothing to announce or look for.
+        Must be called before `Acknowledgements.start`: a context that acknowledges and announces no
+        links counts as one without.
         """
+        if self.advertisement is not None:
+            with translated("links"):
+                token = session.liveliness().declare_token(self._prefix + self.advertisement)
+            self._declared = [token]
+
+    def start(self, session: zenoh.Session) -> None:
+        """Subscribe to the tokens of others; existing ones arrive immediately.
+
+        Without links, there is nothing to look for.
+        """
+        self._state.acknowledgements.listen(has_links=self.advertisement is not None)
         if self.advertisement is None:
             return
         self._session = session
         liveliness = session.liveliness()
         with translated("links"):
-            self._declared = [
+            self._declared += [
                 liveliness.declare_subscriber(
                     f"{PREFIX}/*/*/**", direct(self._tokens.put), history=True
                 ),
@@ -120,7 +132,6 @@ class ZenohPeerDirectory:
                 session.declare_queryable(
                     self._links_key(self._state.participant), direct(self._queries.put)
                 ),
-                liveliness.declare_token(self._prefix + self.advertisement),
             ]
         for zid, kind in self._connected.items():
             self._connect(zid, kind)
@@ -264,6 +275,11 @@ class ZenohPeerDirectory:
             else:
                 self._hosts.discard(participant)
         elif what.startswith("link/") and key.startswith(self._prefix):
+            if participant != self._state.participant:
+                is_near = what == (self.advertisement or "").partition("/")[2]
+                self._state.acknowledgements.note_links(
+                    participant, is_near=is_near, present=present
+                )
             self.on_advertisement(key.removeprefix(self._prefix), present)
         self._update()
 
