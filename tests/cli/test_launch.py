@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -206,3 +208,30 @@ def test_xacro_names_a_file_that_is_not_there(
     assert main(["launch", str(file), "--print"]) == 1
 
     assert "No such file or directory: /no/arm.urdf" in capsys.readouterr().err
+
+
+def test_copies_of_parameter_files_go_with_the_command(tmp_path: Path) -> None:
+    """The command ends without exit handlers, and nothing else removes them."""
+    source, temporary = tmp_path / "nav.yaml", tmp_path / "temporary"
+    source.write_text("nav: {ros__parameters: {speed: 1.0}}")
+    temporary.mkdir()
+    file = tmp_path / "nav.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import LogInfo\n"
+        "from nav2_common.launch import ReplaceString, RewrittenYaml\n"
+        "def generate_launch_description():\n"
+        f"    rewritten = RewrittenYaml({str(source)!r}, {{'speed': '2.0'}})\n"
+        f"    replaced = ReplaceString({str(source)!r}, {{'nav': 'map'}})\n"
+        "    return LaunchDescription([LogInfo(msg=rewritten), LogInfo(msg=replaced)])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "aionode", "launch", "--print", str(file)],
+        env=os.environ | {"TMPDIR": str(temporary)},
+        capture_output=True,
+        check=True,
+        text=True,
+    )
+
+    assert done.stdout.count(str(temporary)) == 2
+    assert list(temporary.glob("aionode_launch_*")) == []

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, NoReturn
 import click
 
 from aionode._process.streams import accepts
+from aionode._process.temporary import remove_temporary_folders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,11 +46,14 @@ def status_of(error: AionodeError) -> int:
 def leave(status: int, text: str = "") -> None:
     """Exit immediately, without waiting for threads or exit handlers.
 
+    Temporary folders are removed, as an exit handler would do.
+
     Output has already been flushed; flushing again could block on its reader.
     """
     if text and accepts(sys.stderr.fileno()):
         with contextlib.suppress(OSError):
             os.write(sys.stderr.fileno(), text.encode(errors="backslashreplace"))
+    remove_temporary_folders()
     os._exit(status)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from aionode._process.bounded_yaml import loaded_yaml
+from aionode._process.temporary import temporary_folder
 from launch.condition import Condition
 from launch.launch_context import LaunchContext
 from launch.substitution import (
@@ -247,14 +248,14 @@ def with_values(content: Any, replace: Callable[[Any], Any]) -> Any:
 
 
 @cache
-def folder_of_copies() -> tempfile.TemporaryDirectory[str]:
+def folder_of_copies() -> str:
     """Return the folder for modified copies, which is removed with this process."""
-    return tempfile.TemporaryDirectory(prefix="aionode_launch_")
+    return temporary_folder("aionode_launch_")
 
 
 def written(text: str, folder: str | None = None) -> str:
     """Write a text to a new file, and return its path."""
-    descriptor, path = tempfile.mkstemp(dir=folder or folder_of_copies().name, suffix=".yaml")
+    descriptor, path = tempfile.mkstemp(dir=folder or folder_of_copies(), suffix=".yaml")
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
         file.write(text)
     return path
