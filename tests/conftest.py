@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 # Tests import rclpy, launch and others of ROS's packages; tests.support.without_ros undoes this.
 rclpy.install()
 
-# How long an example takes depends on what else runs, such as the other workers.
+# How long an example takes depends on what else runs, such as other workers.
 settings.register_profile(
     "tests",
     deadline=None,
@@ -41,15 +41,15 @@ settings.register_profile(
     max_examples=10,
 )
 settings.load_profile("tests")
-# `.ci/run` and `make stress` use "thorough", for the same properties once more; `make fuzz` uses
-# "fuzz". Tests that set a number of examples of their own take it as a part of the profile's.
+# `.ci/run` and `make stress` use "thorough", with more examples of each property; `make fuzz`
+# uses "fuzz". Tests with a number of examples of their own use a fraction of the profile's.
 settings.register_profile("thorough", settings.get_profile("tests"), max_examples=100)
 settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
 
-# Collecting makes half a million objects that all stay: looking for garbage takes half of its time.
+# Collection creates half a million objects that all stay: garbage collection would double its time.
 gc.disable()
 
-# What runs the tests may ignore SIGHUP, as nohup does, and every process that they start would too.
+# The parent of the tests may ignore SIGHUP, as nohup does; every process that they start would too.
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
@@ -76,7 +76,7 @@ PROCESSES = (
     "tests/test_web_robot.py",
     "tests/typing/",
 )
-"""Files and folders whose tests start processes. They take long, so several workers begin here."""
+"""Files and folders whose tests start processes; they take long, so workers start with them."""
 
 BOTH_LOOPS = (
     "tests/clock/",
@@ -102,9 +102,9 @@ BOTH_LOOPS = (
 )
 """Files and folders whose tests always run on asyncio and on uvloop.
 
-They are about what differs between the two: alarms, sockets, threads, the order of callbacks, and
-the start and end of a loop. Zenoh has threads of its own: how a loop is woken by them is the same
-for all that it brings. On uvloop, tests in other places have the mark `second_loop`.
+They test what differs between the two: alarms, sockets, threads, the order of callbacks, and the
+start and end of a loop. Zenoh has threads of its own, which wake a loop in the same way for
+everything that arrives. On uvloop, tests elsewhere have the mark `second_loop`.
 """
 
 
@@ -127,7 +127,7 @@ def is_compiled(test: Path) -> bool:
 
 
 def compile_once(arguments: list[str]) -> None:
-    """Collect the tests in one process, so that not each worker compiles all that they import.
+    """Collect the tests in one process, so that not every worker compiles all imported modules.
 
     In a fresh clone or environment, this takes more than ten seconds of processor time.
     """
@@ -142,9 +142,9 @@ def compile_once(arguments: list[str]) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have only longer runs try the numbers and texts that stand in the code of all modules.
+    """Let only longer runs try the constants that occur in the code of all modules.
 
-    Hypothesis reads more than a thousand files for them, for two seconds in each worker.
+    Hypothesis reads more than a thousand files to find them, which takes each worker two seconds.
     """
     if not config.getoption("--hypothesis-profile") and hasattr(providers, "_get_local_constants"):
         providers._get_local_constants = lambda: providers._local_constants
@@ -152,27 +152,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use several workers for each processor: two thirds of a test's time are waits."""
+    """Use several workers per processor: two thirds of a test's time is spent waiting."""
     return 2 * (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop() -> None:
-    """Look for garbage again when the tests are collected, and not at all that this has made."""
+    """Enable garbage collection again after collecting the tests, excluding what that created."""
     gc.freeze()
     gc.enable()
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish() -> None:
-    """Look for garbage once: pytest looks ten times, at all objects that collecting has made."""
+    """Collect garbage once: pytest does so ten times, with all objects of the collected tests."""
     gc.collect()
     gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Bound async tests, mark those of processes, and leave out what one loop can show."""
+    """Limit the time of async tests; mark those of processes, and those that one loop covers."""
     for item in items:
         if item.nodeid.startswith(PROCESSES):
             item.add_marker("processes")
@@ -205,10 +205,10 @@ def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..
 def pytest_asyncio_loop_factories(
     config: pytest.Config, item: pytest.Item
 ) -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
-    """Run each async test on asyncio and on uvloop; not make what would only be deselected.
+    """Run each async test on asyncio and on uvloop, without creating tests that are deselected.
 
-    With "not first_loop" among the selected marks, what does not depend on the loop runs on uvloop;
-    tests of processes are made for both loops, so that "second_loop" can select from them.
+    With "not first_loop" among the selected marks, tests that do not depend on the loop run on
+    uvloop; tests of processes are created for both loops, so that "second_loop" can select some.
     """
     factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {
         "asyncio": CheckingLoop,
@@ -230,7 +230,7 @@ def pytest_asyncio_loop_factories(
 
 @pytest.fixture(autouse=True)
 def own_imports() -> Iterator[None]:
-    """Have no other test import what this one has `install` find, or see its workspace."""
+    """Keep other tests from importing what `install` finds for this one, and from its workspace."""
     before, imported = list(sys.meta_path), set(sys.modules)
     yield
     sys.meta_path[:] = before
@@ -239,7 +239,7 @@ def own_imports() -> Iterator[None]:
     if loaded := sys.modules.get("aionode.idl.named"):
         loaded.NAMED.__init__()
         loaded.SEEN.clear()
-        for name in sys.modules.keys() - imported:  # to look at all takes 1.7 ms
+        for name in sys.modules.keys() - imported:  # examining all of them takes 1.7 ms
             if isinstance(getattr(sys.modules[name], "__loader__", None), loaded.NamedLoader):
                 del sys.modules[name]
 
@@ -260,8 +260,8 @@ async def context(aionode_context: Context) -> Context:
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Escape lone surrogates in captured output: pytest-xdist cannot send them.
 
-    The time limit of pytest-timeout stands still meanwhile: where it ended the making of a report,
-    all other tests would end with it.
+    Meanwhile, the time limit of pytest-timeout is suspended: if it struck while a report is made,
+    it would end all other tests as well.
     """
     left_s, _ = signal.setitimer(signal.ITIMER_REAL, 0)
     report = yield

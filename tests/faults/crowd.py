@@ -1,15 +1,15 @@
-"""Nodes come and go beside ``aionode router``, which has to answer newcomers all the while.
+"""Nodes come and go at ``aionode router``, which has to answer newcomers all the time.
 
-``make crowd``, or ``python -m tests.faults.crowd --nodes 300 --seconds 120``: a few processes make
-and end nodes, each in a context of its own, with a publisher, a subscription and all that a node
-has. Four times a second a newcomer opens a plain Zenoh session with the router, asks it for all
-tokens, and leaves; and one does the same with a second router, which is alone.
+``make crowd``, or ``python -m tests.faults.crowd --nodes 300 --seconds 120``: a few processes
+create and destroy nodes, each in a context of its own, with a publisher, a subscription and
+everything else that a node has. Four times a second a newcomer opens a plain Zenoh session with the
+router, queries all tokens, and leaves; another one does the same with a second, idle router.
 
-On a busy machine most of that time is waiting for a processor. Linux counts it for each thread, and
-that of the router's thread and the newcomer's thread that waited for longest is taken off. What is
-left is what the router needs to compute, and what it waits for by itself, such as a lock. The
-program fails if a newcomer gets no answer, or if one of them takes `LIMIT_S` longer than the
-longest with the idle router.
+On a busy machine, most of that time is spent waiting for a processor. Linux counts these waits for
+each thread; the longest wait of a thread, in the router and in the newcomer, is subtracted. What is
+left is what the router computes, and what it waits for by itself, such as a lock. The program fails
+if a newcomer gets no answer, or if one takes `LIMIT_S` longer than the slowest one with the idle
+router.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ ANSWER_S: Final = 5.0
 PERIOD_S: Final = 0.25
 PROCESSES: Final = 3
 SIDE_BY_SIDE: Final = 2
-"""How many nodes of each process are there at once."""
+"""Number of simultaneous nodes of each process."""
 
 
 async def come_and_go(name: str, count: int, each_s: float) -> None:
@@ -132,7 +132,7 @@ class Answers:
         self.ran_s: list[float] = []
 
     def ask(self) -> None:
-        """Have one newcomer ask."""
+        """Let one newcomer query the router."""
         router, own = Scheduled(self.router), Scheduled(os.getpid())
         began_ns = time.perf_counter_ns()
         newcomer(self.port)
@@ -194,7 +194,7 @@ def main() -> None:
         busy_router, idle_router = stack.enter_context(routers(port, idle_port))
         busy, idle = Answers(port, busy_router), Answers(idle_port, idle_router)
         for each_port in (port, idle_port):
-            newcomer(each_port)  # what is made once for all
+            newcomer(each_port)  # creates what all share
         began = time.monotonic()
         crowd = [
             stack.enter_context(

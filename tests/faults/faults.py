@@ -1,4 +1,4 @@
-"""The faults that strike the processes of a case. Each returns when it is over."""
+"""The faults that strike the processes of a case; each returns when the fault is over."""
 
 from __future__ import annotations
 

@@ -49,38 +49,39 @@ ROOT = Path(__file__).parent.parent.parent
 RCLPY_PROGRAM = Path(__file__).with_name("motion") / "rclpy_program.py"
 
 READY_LIMIT_S = 30.0
-"""How long all processes may take to hear each other at first, on a busy machine."""
+"""How long all processes may take until they receive from each other, on a busy machine."""
 
 RECOVERY_LIMIT_S = 20.0
-"""Time after which what does not work again counts as hung, in seconds."""
+"""Time after which anything that does not work again counts as hung, in seconds."""
 
 BEFORE_S = 1.0
-"""How long everything works before the fault."""
+"""How long everything works before the fault, in seconds."""
 
 START_S = 1.0
-"""How long a process that takes another's place may still be busy with its start."""
+"""How long a process that replaces another may still be busy starting, in seconds."""
 
 AFTER_S = 1.5
-"""How long everything works after it."""
+"""How long everything works after the fault, in seconds."""
 
 QUIET_LIMIT_S = 10.0
-"""How long what is under way may take to arrive when nothing more is sent."""
+"""How long messages in transit may take to arrive when nothing more is sent, in seconds."""
 
 END_LIMIT_S = 30.0
-"""How long a process may take to end on a busy machine; then it is killed."""
+"""How long a process may take to end on a busy machine before it is killed, in seconds."""
 
 
 END_S = 3.0
-"""How long it should take: a second more than it waits for readers to take what they lack."""
+"""How long ending should take: a second more than it waits for readers that lack messages."""
 
 BUSY = 2
-"""Of so many cases at once, processes start or end, which takes the processor from all others."""
+"""How many cases start or end processes at a time, which takes the processor from all others."""
 
 GAP_LIMIT_S = 0.05
-"""How long a loop may stand still by itself."""
+"""How long a loop may be stalled by itself, in seconds."""
 
 CONTROL = Role("control", control=True)
-"""What the machine makes any process wait for, however little it does."""
+"""A process that does next to nothing, which measures how long the machine makes any process wait.
+"""
 
 
 class Skipped(Exception):  # noqa: N818  # no error
@@ -99,11 +100,11 @@ class Outcome(msgspec.Struct):
         doubled: How many arrived twice.
         hung: What did not recover, exceeded its time limit, or did not end.
         recovery_s: From the end of the fault until everything worked again.
-        gap_s: The longest time for which the loop of a process that was not struck did not run.
+        gap_s: The longest stall of the loop of a process that was not struck.
         own_gap_s: The same, without the time for which its threads waited for a core.
         control_gap_s: Like `gap_s`, for a control process without a node.
-        control_own_gap_s: Like `own_gap_s`, for that process: the machine itself stood still.
-        end_s: The longest that a process took to end after SIGTERM.
+        control_own_gap_s: Like `own_gap_s`, for that process: the machine itself was stalled.
+        end_s: The longest time that a process took to end after SIGTERM.
         control_end_s: Like `end_s`, for the process without a node.
     """
 
@@ -131,13 +132,13 @@ class Case(msgspec.Struct, frozen=True):
         roles: The processes.
         strike: The fault; returns when it is over.
         hurt: Names of the processes whose own event loop the fault blocks.
-        loss: What may be lost: ``none`` of a KEEP_ALL publisher and only what is told of others,
-            only what is ``told``, or ``any``, where readers that a publisher takes for gone miss
-            what it says meanwhile.
-        recovery_limit_s: After how long everything has to work again.
-        lasts_s: About how long the fault takes; the longest begin first.
+        loss: What may be lost: ``none`` of a KEEP_ALL publisher, and of others only what is
+            reported; only what is reported (``told``); or ``any``, if readers that a publisher
+            considers gone miss what it sends meanwhile.
+        recovery_limit_s: Time after which everything has to work again.
+        lasts_s: About how long the fault takes; the longest start first.
         short: Whether it is part of the ordinary tests.
-        around: What has to be there before its processes start, such as two hosts.
+        around: What has to exist before its processes start, such as two hosts.
     """
 
     name: str
@@ -154,7 +155,7 @@ class Case(msgspec.Struct, frozen=True):
         """Run once; see `run_case`."""
         try:
             return [(self, await run_case(self, busy))]
-        except Exception as error:  # noqa: BLE001 - it is told
+        except Exception as error:  # noqa: BLE001 - it is reported
             return [(self, error)]
 
     def broken(
@@ -223,8 +224,8 @@ class Child:
                 pass_fds=[writing],
                 env={**self._env, REPORTS_VARIABLE: str(writing)},
                 cwd=ROOT,
-                # A group of the harness's session can be suspended, one of a session of its own
-                # cannot; but only the head of a session can have a terminal.
+                # A process group of the harness's session can be suspended, one in a session of its
+                # own cannot; but only a session leader can have a controlling terminal.
                 start_new_session=terminal,
                 process_group=None if terminal else 0,
                 preexec_fn=take_terminal if terminal else None,
@@ -298,7 +299,7 @@ class Child:
 
     @property
     def started_s(self) -> float:
-        """When it had started, including imports and the first use of its types."""
+        """When its start was over, including imports and the first use of its types."""
         return next((each.time_s for each in self.reports if each.ready), 0.0) + START_S
 
     @property
@@ -319,7 +320,7 @@ class Child:
         return self._process.pid
 
     def tell(self, word: str) -> None:
-        """Send it a line."""
+        """Send it a command, as a line on its stdin."""
         if self._process is not None and self._process.stdin is not None and self.runs:
             with contextlib.suppress(ConnectionError):
                 self._process.stdin.write(f"{word}\n".encode())

@@ -127,7 +127,7 @@ def member(name: str, **options: Any) -> Role:
 
 ROUTER = Role("router here", router=f"tcp/0.0.0.0:{PORT}")
 NAMING: dict[str, str] = {"ROS_STATIC_PEERS": ADDRESSES[0]}
-"""What a process says that is to reach the other host, which has the only router."""
+"""Messages of a process that have to reach the other host, which has the only router."""
 
 TALKING = (
     Role(
@@ -159,7 +159,7 @@ KEEPING = (
     Role("here", publish=(Publish("/all", keep_all=True, period_s=0.05),)),
     Role("there", hear=(Hear("/all", keep_all=True),), env=NAMING),
 )
-"""Nothing that may lose anything."""
+"""Publishers and subscriptions that may not lose anything."""
 
 TWO_ROUTERS = (
     ROUTER,

@@ -48,7 +48,7 @@ __all__ = ["Reporter", "text", "told_by"]
 REPORT_S = 0.1
 TICK_S = 0.01
 LONG_S = 0.02
-"""From when on it is asked what other threads have waited for, which takes a millisecond."""
+"""From this gap on, the waits of other threads are examined, which takes a millisecond."""
 
 CALL_LIMIT_S = 1.0
 GOAL_LIMIT_S = 3.0
@@ -56,7 +56,7 @@ HUNG_S = 2.0
 """How much longer than its limit a call or goal may take: canceling a goal waits 1 s at most."""
 
 PAUSE_S = 0.05
-"""Between two calls of one process, on average."""
+"""Time between two calls of one process, on average."""
 
 
 def profile(each: Publish | Hear) -> QoSProfile:
@@ -68,7 +68,7 @@ def profile(each: Publish | Hear) -> QoSProfile:
 
 
 def text(sender: str, number: int, size: int) -> str:
-    """Return what a message says: who sent it, its number, and when."""
+    """Return the text of a message: its sender, its number, and when it was sent."""
     return f"{sender} {os.getpid()} {number} {time.monotonic()} {'x' * size}"
 
 
@@ -78,7 +78,7 @@ def told_by(endpoint: Any) -> int:
 
 
 class GivenUp(logging.Handler):
-    """Counts the messages of which a warning says that links have given them up."""
+    """Counts the messages that links have given up, according to their warnings."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -92,9 +92,9 @@ class GivenUp(logging.Handler):
 
 
 class CoreWait:
-    """For how long the threads of this process were ready to run, but had no core of the machine.
+    """Measures how long the threads of this process were ready to run, but had no core.
 
-    Where the system does not tell, that is always 0.
+    It is always 0 if the system does not report it.
     """
 
     def __init__(self) -> None:
@@ -114,9 +114,9 @@ class CoreWait:
         return self._own_s - before_s
 
     def largest_of_others(self) -> float:
-        """Return the longest time of one other thread since the last call, in seconds.
+        """Return the longest time of any other thread since the last call, in seconds.
 
-        It may have held what this thread waited for, such as the GIL.
+        That thread may have held something that this thread waited for, such as the GIL.
         """
         before_s, self._others_s = self._others_s, {}
         for stat in Path("/proc/self/task").glob("*/schedstat"):
@@ -128,7 +128,7 @@ class CoreWait:
 
 
 class Reporter:
-    """Collects what a process sees, and tells it."""
+    """Collects what a process sees, and reports it."""
 
     def __init__(self) -> None:
         self.report = Report()
@@ -138,7 +138,7 @@ class Reporter:
         self.core_wait: CoreWait | None = None
 
     def hear(self, topic: str, data: str) -> None:
-        """Take a message."""
+        """Record a message."""
         sender, pid, number, sent_s, _ = data.split(" ", 4)
         ranges = self.report.heard.setdefault(stream_key(topic, sender, int(pid)), [])
         if not note(ranges, int(number)):
@@ -147,7 +147,7 @@ class Reporter:
         self.report.marks[mark] = max(self.report.marks.get(mark, 0.0), float(sent_s))
 
     def watch(self) -> None:
-        """Measure for how long the event loop does not turn, from now on."""
+        """Measure the stalls of the event loop from now on."""
         loop = asyncio.get_running_loop()
         last_s = time.monotonic()
         core_wait = self.core_wait = CoreWait()
@@ -167,7 +167,7 @@ class Reporter:
         loop.call_later(TICK_S, tick)
 
     def tell(self) -> None:
-        """Print a report; its gap and what wheels were handed begin anew."""
+        """Print a report; start over with the gaps and with what the wheels receive."""
         self.report.time_s = time.monotonic()
         self.report.nodes = sorted(self.nodes())
         self.report.told = sum(map(told_by, self.endpoints)) + self.given_up.count
@@ -180,12 +180,12 @@ class Reporter:
         while True:
             self.tell()
             if self.core_wait is not None:
-                self.core_wait.largest_of_others()  # what was before belongs to no later gap
+                self.core_wait.largest_of_others()  # earlier waits do not belong to later gaps
             await asyncio.sleep(REPORT_S)
 
 
 class Process:
-    """A node that does what its role says."""
+    """A node that plays its role."""
 
     def __init__(self, role: Role) -> None:
         self.role = role
@@ -199,7 +199,7 @@ class Process:
         """Play the role until SIGTERM."""
         os.set_blocking(sys.stdin.fileno(), False)
         asyncio.get_running_loop().add_reader(sys.stdin, self.obey)
-        if not (self.role.wheels or self.role.moves):  # of those, other times are measured
+        if not (self.role.wheels or self.role.moves):  # for those, other times are measured
             self.reporter.watch()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self.reporter.go_on())
@@ -211,7 +211,7 @@ class Process:
                 await self.be_node()
 
     def obey(self) -> None:
-        """Do what a line of stdin says."""
+        """Execute the command in a line of stdin."""
         word = sys.stdin.readline().strip()
         if word == "pause":
             self.publishes.clear()
@@ -227,7 +227,7 @@ class Process:
             self.quiet.set()
 
     async def route(self) -> None:
-        """Be a router."""
+        """Run as a router."""
         session = await open_router(
             [self.role.router], [self.role.connect] * bool(self.role.connect)
         )
@@ -238,7 +238,7 @@ class Process:
             await asyncio.shield(close_session(session))
 
     async def be_node(self) -> None:
-        """Be a node."""
+        """Run as a node."""
         role = self.role
         async with (
             Context() as context,
@@ -252,7 +252,7 @@ class Process:
             self.offer(node)
             self.reporter.nodes = node.get_node_names
             self.report.ready = True
-            self.reporter.tell()  # now: a pipe that is not read may block a noisy process for ever
+            self.reporter.tell()  # now: a pipe that is not read may block a noisy process forever
             work: list[Coroutine[Any, Any, None]] = [
                 *(self.publish(node, each) for each in role.publish),
                 *(move(node, wheel) for wheel in role.moves),
@@ -274,11 +274,11 @@ class Process:
                     tasks.create_task(each_work)
                 if not any(each.count for each in role.publish):
                     await asyncio.Event().wait()
-        # Only who sends a number of messages and ends comes here.
+        # Only reached by processes that end after a number of messages.
         asyncio.get_running_loop().call_soon(os.kill, os.getpid(), 15)
 
     def offer(self, node: Node) -> None:
-        """Subscribe and serve, and be wheels."""
+        """Create subscriptions, servers and wheels."""
         role = self.role
         if role.parameter_size:
             node.declare_parameter("large", "x" * role.parameter_size)
@@ -317,7 +317,7 @@ class Process:
         )
 
     async def publish(self, node: Node, publish: Publish) -> None:
-        """Publish until it is to be quiet, or the last one is sent."""
+        """Publish until told to be quiet, or until the last message was sent."""
         publisher = node.create_publisher(String, publish.topic, profile(publish))
         self.reporter.endpoints.append(publisher)
         await publisher.wait_for_subscribers(publish.readers)
@@ -340,7 +340,7 @@ class Process:
     async def attempt(
         self, mark: str, limit_s: float, work: Callable[[], Coroutine[Any, Any, object]]
     ) -> None:
-        """Call something, and note how it ends."""
+        """Await something, and record how it ends."""
         began_s = time.monotonic()
         self.report.calls += 1
         try:
@@ -353,7 +353,7 @@ class Process:
             self.report.hung += 1
 
     async def call(self, node: Node) -> None:
-        """Call again and again."""
+        """Call the service repeatedly."""
         client = node.create_client(GetParameters, self.role.call)
         request = GetParameters.Request(names=["x" * self.role.size])
         while not self.quiet.is_set():
@@ -367,7 +367,7 @@ class Process:
             await asyncio.sleep(PAUSE_S * self.role.callers)
 
     async def send(self, node: Node) -> None:
-        """Send goals again and again."""
+        """Send goals repeatedly."""
         client = node.create_action_client(Fibonacci, self.role.send)
 
         async def goal() -> None:
@@ -380,7 +380,7 @@ class Process:
 
 
 async def answer(request: GetParameters.Request) -> GetParameters.Response:
-    """Answer with what was sent."""
+    """Return the text of the request."""
     return GetParameters.Response(values=[ParameterValue(string_value=request.names[0])])
 
 
@@ -401,7 +401,7 @@ async def shout(node: Node) -> None:
 
 
 async def serve_clients(node: Node) -> None:
-    """Have a gateway."""
+    """Run a gateway."""
     from aionode.gateway import Gateway, Policy, Rule, Who  # few roles have one
 
     policy = Policy.default(allow_write=True)
@@ -413,7 +413,7 @@ async def serve_clients(node: Node) -> None:
 
 
 async def look_up(node: Node) -> None:
-    """Look up types of topics that are not known, as a bag or a browser does, until cancelled."""
+    """Look up unknown types of topics until cancelled, as a recorder or a gateway does."""
     while True:
         names = {name for _, types in node.get_topic_names_and_types() for name in types}
         for name in names - {type_name(String)}:
@@ -425,7 +425,7 @@ async def look_up(node: Node) -> None:
 
 
 def forked() -> None:
-    """Make a node in a forked process; refusing it is an answer too."""
+    """Create a node in a forked process; an error is fine too."""
 
     async def main() -> None:
         async with Node("forked"):

@@ -1,8 +1,7 @@
-"""What a process of a fault case does, and what it reports: the words between both sides.
+"""The protocol between the harness and the processes of a fault case: roles, words and reports.
 
-The harness hands a `Role` to a process as its argument; the process writes a `Report` as one line
-of JSON ten times a second, and a last one at its end, to the descriptor that the variable
-`REPORTS_VARIABLE` names.
+The harness passes a `Role` to a process as its argument. Ten times a second, and at its end, the
+process writes a `Report` as one line of JSON to the descriptor in the variable `REPORTS_VARIABLE`.
 """
 
 from __future__ import annotations
@@ -33,23 +32,22 @@ REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 Output = Literal["file", "full", "unread", "terminal"]
 
 Word = Literal["pause", "go on", "quiet", "join", "near"]
-"""What a process is told in a line on its stdin: to publish nothing until it is to go on, to
-publish, call and send goals no more, to have its wheels join, or that the target of its wheels is
-near."""
+"""A command to a process, as a line on its stdin: pause publishing; resume it; stop publishing,
+calling and sending goals; let its wheels join; or move the target close to its wheels."""
 
 
 class Publish(msgspec.Struct, frozen=True):
-    """Messages that count from 1, each with the time at which it was sent.
+    """A publisher of messages numbered from 1, each with the time at which it was sent.
 
     Attributes:
-        topic: Where.
-        keep_all: Whether the publisher waits for slow readers, or keeps the last `depth`.
-        depth: How many it keeps.
-        transient: Whether it keeps what it has published for late readers.
-        period_s: Time between two messages; 0 for as fast as can be.
+        topic: Its topic.
+        keep_all: Whether it waits for slow readers; otherwise it keeps the last `depth` messages.
+        depth: How many messages it keeps.
+        transient: Whether it keeps its messages for late readers.
+        period_s: Time between two messages; 0 for as fast as possible.
         size: Bytes that are added to each message.
-        readers: For how many it waits before the first one.
-        count: How many are sent; 0 for until the end. After the last one the process ends at once.
+        readers: How many readers it waits for before the first message.
+        count: How many messages it sends; 0 for no limit. After the last one the process ends.
     """
 
     topic: str
@@ -66,13 +64,13 @@ class Hear(msgspec.Struct, frozen=True):
     """A subscription.
 
     Attributes:
-        topic: Where.
+        topic: Its topic.
         keep_all: Whether its publishers wait for it.
         depth: How many messages may wait for its callback.
-        transient: Whether it asks for what its publishers have kept.
+        transient: Whether it requests the messages that its publishers have kept.
         slow_s: How long the callback awaits for each message.
-        block_s: How long it keeps the loop busy for each message.
-        pause_s: How long it awaits once, at message number 50, with its loop free.
+        block_s: How long the callback blocks the loop for each message.
+        pause_s: How long the callback awaits once, at message number 50, without blocking the loop.
     """
 
     topic: str
@@ -85,41 +83,41 @@ class Hear(msgspec.Struct, frozen=True):
 
 
 class Role(msgspec.Struct, frozen=True):
-    """One process: a node that does all of what is named here.
+    """One process: a node that does everything listed here.
 
     Attributes:
-        name: Of the node, and of the process within its case.
-        publish: What it publishes.
-        hear: What it hears.
+        name: The name of the node, and of the process within its case.
+        publish: Its publishers.
+        hear: Its subscriptions.
         serve: The service that it serves.
-        call: The service that it calls, again and again, with a time limit of 1 s.
-        callers: How many such calls are under way at once.
+        call: The service that it calls repeatedly, with a time limit of 1 s.
+        callers: The number of concurrent calls.
         size: Bytes of each request and of each response.
         act: The action that it serves.
         send: The action to which it sends goals, one after the other.
-        router: The endpoint on which it listens as a router; it has no node then.
-        connect: The endpoint of another router, with which it is linked then.
+        router: The endpoint on which it listens as a router, without a node.
+        connect: The endpoint of another router with which that router is linked.
         ros: Whether it is a stand-in for a ROS 2 node: a Zenoh session with the settings of
-            rmw_zenoh, the lease of 60 s included. It can only publish and hear.
-        noisy: Whether it writes to stdout and stderr without end.
-        fork: Whether it makes a node in a forked child of its own.
-        parameter_size: Characters of the parameter ``large`` that its services of parameters offer;
-            0 for a node without such services.
-        curious: Whether it looks up types that it does not know, and makes messages of them.
-        gateway: Whether it has a gateway besides, where everything is allowed on this host, and to
-            a viewer, an operator and an admin with tokens, but to see the parameter ``large``.
-        control: Whether it has no node, and does nothing but watch its event loop.
-        mover: What it asks to move, in a program of its own.
-        wheels: The wheels that it has.
-        joins: Whether these wheels obey nothing before it is told to have them join.
-        moves: The wheels that it moves, as long as it runs.
-        rclpy: Whether it is a program of plain rclpy: of aionode's, or of what `python` has.
+            rmw_zenoh, including the lease of 60 s. It can only publish and subscribe.
+        noisy: Whether it writes to stdout and stderr endlessly.
+        fork: Whether it creates a node in a forked child.
+        parameter_size: Length of the parameter ``large`` that its parameter services offer; 0 for a
+            node without these services.
+        curious: Whether it looks up unknown types, and creates messages of them.
+        gateway: Whether it also has a gateway, which allows programs of this host, and clients with
+            the tokens viewer, operator and admin, everything except seeing the parameter ``large``.
+        control: Whether it has no node, and only watches its event loop.
+        mover: What it moves, in a program of its own.
+        wheels: Its wheels.
+        joins: Whether these wheels obey nothing until the harness has them join.
+        moves: The wheels that it moves as long as it runs.
+        rclpy: Whether it is a plain rclpy program, on aionode's rclpy or on that of `python`.
         python: The interpreter that runs it; empty for that of the harness.
-        command: What runs instead of a program of these tests, after the interpreter.
-        env: Variables of its environment.
+        command: The arguments of the interpreter, instead of a program of these tests.
+        env: Its environment variables.
         wrapper: A command that runs it, such as ``ip netns exec NAME``.
         output: Where its stdout and stderr go: to a ``file``, to ``/dev/full``, into a pipe that is
-            never read, or to a ``terminal``, which is also the one that controls it.
+            never read, or to a ``terminal``, which is also its controlling terminal.
     """
 
     name: str
@@ -156,21 +154,21 @@ class Report(msgspec.Struct):
     """What a process has seen so far.
 
     Attributes:
-        time_s: When, by `time.monotonic`, which all processes of a host have in common.
+        time_s: The time, by `time.monotonic`, which all processes of a host share.
         ready: Whether its node runs.
-        gap_s: The longest time for which its event loop did not turn, since the last report.
-        own_gap_s: The same without the time for which its threads waited for a core of the machine.
-        marks: For each thing that works, the start of the last time that it did: see `hear_mark`;
-            ``call`` and ``goal`` for an answer and a result.
-        nodes: The nodes that it sees, its own included; a router and a stand-in tell none.
-        sent: How many messages it has published, by `stream_key`.
-        heard: The numbers that it has heard, by `stream_key`: first and last of each range.
-        doubled: How many messages it has heard twice.
+        gap_s: The longest stall of its event loop since the last report.
+        own_gap_s: The same, without the time for which its threads waited for a core.
+        marks: For each thing that works, the start of its last success: see `hear_mark`; ``call``
+            and ``goal`` for an answer and a result.
+        nodes: The nodes that it sees, including its own; routers and stand-ins report none.
+        sent: The number of published messages, by `stream_key`.
+        heard: The numbers of received messages, by `stream_key`: first and last of each range.
+        doubled: How many messages it has received twice.
         told: How many messages its publishers and subscriptions count as lost or dropped.
-        calls: How many calls and goals it has begun.
+        calls: How many calls and goals it has started.
         failed: How many of them ended with an error.
-        hung: How many of them took longer than their time limit allows.
-        handed: What its wheels were handed since the last report.
+        hung: How many of them exceeded their time limit.
+        handed: What its wheels received since the last report.
         last: Whether this is the last report.
     """
 
@@ -192,14 +190,14 @@ class Report(msgspec.Struct):
 
 
 def hear_mark(topic: str, sender: str) -> str:
-    """Return the mark for hearing one process on a topic."""
+    """Return the mark for receiving the messages of one process on a topic."""
     return f"hear {topic} {sender}"
 
 
 def stream_key(topic: str, sender: str, pid: int | Literal[""] = "") -> str:
-    """Return what tells the messages of one publisher from those of its successor.
+    """Return the key that distinguishes a publisher's messages from those of its successor.
 
-    Without the process id it is what all of them begin with.
+    Without the process id, it is the prefix of all these keys.
     """
     return f"{topic} {sender} {pid}"
 
@@ -219,7 +217,7 @@ def note(ranges: list[tuple[int, int]], number: int) -> bool:
 
 
 def missing(ranges: Iterable[tuple[int, int]], last: int) -> int:
-    """Return how many numbers are missing from the first that is there up to `last`."""
+    """Return how many numbers are missing from the first one in the ranges up to `last`."""
     known = list(ranges)
     if not known:
         return 0

@@ -34,7 +34,7 @@ from tests.support.peers import ros_session
 
 
 class StandIn:
-    """A session that publishes and hears."""
+    """A session that publishes and subscribes."""
 
     def __init__(self, role: Role, session: zenoh.Session) -> None:
         self.role = role
@@ -109,9 +109,9 @@ class StandIn:
 
 
 def hush(quiet: threading.Event) -> None:
-    """Wait until it is told to be quiet, after which nothing is published.
+    """Wait for the command to be quiet, after which nothing is published.
 
-    It moves wheels without being told to.
+    It moves wheels without a command.
     """
     while sys.stdin.readline().strip() == "move":
         pass

@@ -18,14 +18,14 @@ STANDS_S = 2.0
 """The longest stall of a loop on a busy machine, in seconds; the defects took several."""
 
 ENDS_S = 20.0
-"""A process takes so long to end there; one that hangs never does."""
+"""How long a process may take to end there; one that hangs never does."""
 
 SHORT = {case.name: case for case in all_cases() if case.short}
 
 
 @cache
 def results() -> dict[str, Outcome | BaseException]:
-    """Return what came of each short case."""
+    """Return the outcome of each short case."""
     found: dict[str, Outcome | BaseException] = {}
 
     def take(case: Case, outcome: Outcome | BaseException) -> None:
@@ -38,7 +38,7 @@ def results() -> dict[str, Outcome | BaseException]:
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("case", SHORT.values(), ids=SHORT)
 def test_a_fault_breaks_no_promise(case: Case) -> None:
-    """Nothing lost that may not be, nothing twice, nothing hung, everything back in time."""
+    """Nothing is lost that must not be, doubled or hung, and everything works again in time."""
     outcome = results()[case.name]
     if isinstance(outcome, Skipped):
         pytest.skip(str(outcome))
@@ -56,7 +56,7 @@ def test_names_of_cases_are_unique() -> None:
 
 
 def test_what_is_missing_is_counted() -> None:
-    """Whatever the order, and what comes twice is known."""
+    """The order does not matter, and a number that comes twice is detected."""
     ranges: list[tuple[int, int]] = []
     new = [note(ranges, number) for number in (3, 4, 7, 5, 4, 9)]
 

@@ -1,4 +1,4 @@
-"""A case of motion: who moves the wheels, how it goes away, and what is promised then."""
+"""A case of motion: who moves the wheels, how that process goes away, and the promise."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ if TYPE_CHECKING:
 __all__ = ["ALLOWED_S", "Motion", "Place", "Stopped", "Switch", "stopped"]
 
 ALLOWED_S = 0.2
-"""How much longer than promised a stop may take: for messages, callbacks and threads."""
+"""How much longer than promised a stop may take, for messages, callbacks and threads, in seconds.
+"""
 
 Strike = Callable[["Play"], Awaitable[None]]
 
 Switch = Literal["lease", "silence", "lost", "end", "signals", "gateway", "defaults"]
 """A mechanism that stops the wheels: the lease of the mover, ``on_silence`` of the wheels,
-``on_client_lost`` of the server, what a node does at its end, aionode's handling of signals, the
-rules of a gateway for commands, the defaults that a type has in its definition."""
+``on_client_lost`` of the server, the shutdown of a node, aionode's handling of signals, the rules
+of a gateway for commands, or the defaults in the definition of a type."""
 
 
 class Stopped(msgspec.Struct):
     """The outcome of one run of a case.
 
     Attributes:
-        raw_s: Time from the fault until the wheels were told to stop; infinite if they went on.
+        raw_s: Time from the fault until the wheels were told to stop; infinite if they never were.
         own_s: The same, without the time for which the mover or the wheels waited for a core.
         late: How many commands moved them after they had stopped, while they were watched.
         moved: How many commands moved them after the fault, while they were watched.
@@ -56,11 +57,11 @@ class Place(msgspec.Struct, frozen=True):
 
     Attributes:
         name: The name of the place, which is unique.
-        table: The title of the table that has its cases.
-        column: The title of its column there.
+        table: The title of the table for its cases.
+        column: The title of its column in the table.
         within: Returns a role placed there.
         roles: Further processes there.
-        around: What has to be there before its processes start, such as two hosts.
+        around: What has to exist before its processes start, such as two hosts.
         together: Whether a fault strikes all movers of the place at once.
         wheels: What the wheels run: aionode, plain rclpy, or the stand-in for a ROS 2 node.
     """
@@ -76,27 +77,27 @@ class Place(msgspec.Struct, frozen=True):
 
 
 class Motion(msgspec.Struct, frozen=True):
-    """A mover that goes, and its wheels.
+    """A mover that goes away, and its wheels.
 
     Attributes:
-        place: Where the processes are; cases of one place have the process of wheels in common.
+        place: Where the processes are; cases of one place share the process of the wheels.
         who: Who moves the wheels, for the table.
-        goes: How it goes away, for the table.
+        goes: How the mover goes away, for the table.
         stops: What stops the wheels, for the table.
         mover: The process that moves them.
         wheel: The wheels.
         strike: What happens to the mover.
-        switches: Without any of these the promise breaks.
-        limit_s: After how long they stand still; None if nothing in aionode can stop them.
+        switches: The mechanisms; without any one of them the promise is broken.
+        limit_s: Promised time until the wheels stop; None if nothing in aionode can stop them.
         allowed_s: How much longer that may take.
         returns: Whether the mover may move them again after the fault, with new commands, and
             another one may take over.
-        beside: Another mover of the same wheels, which goes on.
-        joins_late: Whether other wheels join after the stop, which are to stand still too.
+        beside: Another mover of the same wheels, which continues.
+        joins_late: Whether other wheels join after the stop, which have to stand still too.
         ends: Whether the fault ends the process of the mover.
         lasts_s: About how long the fault takes.
         short: Whether it is part of the ordinary tests.
-        off: Which of its mechanisms is switched off.
+        off: The mechanism that is disabled, if any.
     """
 
     place: Place
@@ -134,7 +135,7 @@ class Motion(msgspec.Struct, frozen=True):
             return [outcome.void]
         found = list(outcome.wrong)
         if self.limit_s is None:
-            # One that is back may have lost its connections meanwhile, and be taken for gone then.
+            # One that is back may have lost its connections meanwhile, and count as gone then.
             was_back = 0 < self.lasts_s <= outcome.raw_s
             if math.isfinite(outcome.raw_s) and not was_back:
                 found.append(f"stopped after {outcome.raw_s:.2f} s, though nothing can stop it")
@@ -180,7 +181,7 @@ class Motion(msgspec.Struct, frozen=True):
             case "defaults":
                 mover = msgspec.structs.replace(mover, sends_zeros=True)
             case "gateway":
-                # What is allowed without a lease is no `move` of an assistant.
+                # Without a lease, an assistant has no `move`.
                 way = "rosbridge" if mover.way.startswith("mcp") else mover.way
                 mover = msgspec.structs.replace(mover, client="lax", way=way)
             case "signals":
@@ -191,7 +192,7 @@ class Motion(msgspec.Struct, frozen=True):
 
 def without_lease(mover: Mover) -> Mover:
     """Return a mover that no lease stops."""
-    if mover.asks in {"policy", "policy apart"}:  # an actor has always one
+    if mover.asks in {"policy", "policy apart"}:  # an actor always has one
         return msgspec.structs.replace(mover, ttl_sec=60.0)
     return msgspec.structs.replace(mover, asks="publisher")
 
@@ -203,10 +204,9 @@ def stopped(
 
     Args:
         motion: The case.
-        handed: What the wheels were handed.
+        handed: What the wheels have received.
         by: The process that moved them.
-        times_s: Since when they moved steadily, when the fault struck, and until when they were
-            watched.
+        times_s: When they started to move steadily, when the fault struck, and when watching ended.
     """
     since_s, struck_s, until_s = times_s
     moves = [each for each in handed if each.what == "move" and each.by == by]

@@ -463,7 +463,7 @@ def cables() -> Iterator[Motion]:
                         "mover": mover(),
                         "wheel": WATCHFUL,
                         "switches": ("silence",),
-                        # It has not gone, only its wheels have, which is nothing that it knows.
+                        # It has not gone away; only its wheels have, which it does not know.
                         "returns": True,
                     },
                 ),
@@ -574,7 +574,7 @@ def gateways() -> Iterator[Motion]:
 ASSISTANTS = Role("gateway", command=("-m", "tests.faults.motion.gateway", "assistants"))
 ERAS = {"new": "2026-07-28", "old": "2025-11-25"}
 NOTICED_S = 0.1
-"""The longest time from what a gateway can notice until the stop."""
+"""The longest time between what a gateway can notice and the stop."""
 
 CEILING_S = 4.0
 
@@ -699,7 +699,7 @@ PUB = Role(
         "{linear: {x: 0.5}}",
     ),
 )
-"""A command from a shell, which is one message a second, and no sender in it."""
+"""A command from a shell: one message a second, without a sender in it."""
 
 
 PUB_DEFAULTS = Role(

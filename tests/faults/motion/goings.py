@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 AGAIN_AFTER_S = 1.2
-"""After so long a second Ctrl-C is one of a person who wants the end, not one more of the first."""
+"""After this time, a second Ctrl-C is a person's request to end at once, and not a repetition."""
 
 Strike = Callable[[Play], Awaitable[None]]
 
@@ -77,8 +77,8 @@ def interrupted_twice(trouble: str = "", *, judged: int = 1) -> Strike:
     """Press Ctrl-C, and again when it does not end.
 
     Args:
-        trouble: What it has run into before.
-        judged: Which of both is the fault: 0 or 1.
+        trouble: The trouble that it has run into before.
+        judged: Which of the two is the fault: 0 or 1.
     """
 
     async def strike(play: Play) -> None:
@@ -112,7 +112,7 @@ async def hung_up(play: Play) -> None:
 
 
 def at_once(fault: Fault) -> Strike:
-    """Apply a fault to all movers of a place at once, such as a fault of the cable."""
+    """Apply a fault, such as one of the cable, to all movers of a place at once."""
     ends: dict[Stage, asyncio.Event] = {}  # on another stage, what shows nothing begins anew
 
     async def strike(play: Play) -> None:
@@ -136,7 +136,7 @@ async def browser_leaves(play: Play) -> None:
 
 
 async def drives_into_standstill(play: Play) -> None:
-    """Have it let go, and drive again for 2 s while its gateway is frozen for 3 s."""
+    """Make it let go, and drive again for 2 s while its gateway is frozen for 3 s."""
     gateway = play.stage.children["gateway"]
     play.struck()
     play.child.tell("quiet")
@@ -150,7 +150,7 @@ async def drives_into_standstill(play: Play) -> None:
 
 
 async def killed_beside_another(play: Play) -> None:
-    """Have another program of the same identity try to drive as well, and then kill it."""
+    """Let another program of the same identity try to drive as well, and then kill it."""
     play.stage.children["rival"].tell("move")
     await asyncio.sleep(1.0)
     play.struck()
@@ -158,7 +158,7 @@ async def killed_beside_another(play: Play) -> None:
 
 
 async def leaves(play: Play) -> None:
-    """Have it close its connection as at its end."""
+    """Make it close its connection as at its end."""
     play.struck()
     play.child.tell("leave")
 

@@ -178,7 +178,7 @@ def by_run(role: Role, reporter: Reporter) -> None:
 
 
 def by_asyncio(role: Role, reporter: Reporter) -> None:
-    """Move in the body of ``async with node``, in a program that knows nothing of signals."""
+    """Move in the body of ``async with node``, in a program that handles no signals itself."""
 
     async def main() -> None:
         async with asyncio.TaskGroup() as tasks:

@@ -120,7 +120,7 @@ def answer_apart(_seen: dict[str, Any]) -> Any:
 
 
 def chunk(by: int) -> Any:
-    """Return commands that say when and by which process they are."""
+    """Return commands that contain their time and process."""
     now_s = time.monotonic()
     return np.array([(1.0, now_s + step / FPS, by) for step in range(1, CHUNK + 1)])
 

@@ -48,20 +48,20 @@ class Program:
     # Reports and troubles
 
     def tell(self) -> None:
-        """Report what the wheels were given since the last time."""
+        """Report what the wheels have received since the last report."""
         with self.telling:
             handed, self.handed = self.handed, []
             report = Report(time_s=time.monotonic(), ready=True, handed=handed)
             os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(report) + b"\n")
 
     def report(self) -> None:
-        """Report again and again."""
+        """Report repeatedly."""
         while True:
             self.tell()
             time.sleep(REPORT_S)
 
     def note(self, topic: str, what: What, by: int = 0, sent_s: float = 0.0) -> None:
-        """Record what the wheels were given."""
+        """Record what the wheels have received."""
         with self.telling:
             self.handed.append(Handed(topic, what, time.monotonic(), by, sent_s))
         if what != "move":

@@ -25,11 +25,11 @@ TTL_S = 0.3
 SILENCE_S = 0.3
 LOST_S = 3.0
 DDS_LEASE_S = 20.0
-"""After which Fast DDS takes a participant for gone, in seconds."""
+"""Time after which Fast DDS considers a participant gone, in seconds."""
 
 ROS_LEASE_S = 60.0
-"""After which rmw_zenoh does. Its own sessions lose aionode's after 10 s: a frozen node
-that is back later may have to connect anew, and is gone for a moment then.
+"""The same for rmw_zenoh. Its sessions lose those of aionode after 10 s: a frozen node that
+continues later may have to reconnect, and is gone for a moment.
 """
 
 PYTHON_VARIABLE = "AIONODE_FAULTS_ROS_PYTHON"
@@ -133,8 +133,8 @@ def clients(place: Place, who: str, mover: Role, lease_s: float, *ways: Any) -> 
         place: Where.
         who: For the table.
         mover: The process of the client.
-        lease_s: After which its middleware takes it for gone; what is over sooner does not show.
-        ways: In which ways it goes.
+        lease_s: Time after which its middleware considers it gone; shorter faults go unnoticed.
+        ways: The ways in which it goes away.
     """
     for goes, strike, lasts_s in ways:
         shows = not lasts_s or lasts_s > lease_s

@@ -25,34 +25,34 @@ from tests.support.peers import free_ports
 __all__ = ["WATCH_S", "Play", "Scene", "scenes"]
 
 READY_LIMIT_S = 60.0
-"""How long everything may take to move at first, on a busy machine."""
+"""How long everything may take until it moves, on a busy machine, in seconds."""
 
 BEFORE_S = 1.0
-"""How long everything moves before the first fault."""
+"""How long everything moves before the first fault, in seconds."""
 
 APART_S = 0.1
-"""Time between the faults of one scene."""
+"""Time between the faults of one scene, in seconds."""
 
 WATCH_S = 10.0
-"""How long the wheels are watched after a fault is over."""
+"""How long the wheels are watched after a fault, in seconds."""
 
 POLL_S = 0.01
-"""How often reports are looked at."""
+"""Interval at which reports are checked, in seconds."""
 
 STANDS_S = 1.0
-"""How long after its time limit a stop is waited for."""
+"""How long to wait for a stop after its time limit, in seconds."""
 
 LATE_S = 1.0
-"""How long after the stop other wheels join."""
+"""Time between the stop and the start of other wheels, in seconds."""
 
 AGAIN_S = 60.0
-"""How long the wheels may take to obey the next mover, which starts only then."""
+"""How long the wheels may take to obey the next mover, including its start, in seconds."""
 
 REPEATS = 2
-"""How often a run is made anew that showed nothing, as on a machine that has no core to spare."""
+"""How often an inconclusive run is repeated, as on a machine without a free core."""
 
 TOGETHER = 8
-"""How many cases one scene has at most."""
+"""Maximum number of cases in one scene."""
 
 
 class Play:
@@ -90,7 +90,7 @@ class Play:
         return self.stage.children["wheels"]
 
     def handed(self, name: str = "wheels") -> list[Handed]:
-        """Return what the wheels were given so far."""
+        """Return what the wheels have received so far."""
         return self.stage.children[name].handed.get(self.motion.wheel.topic, [])
 
     def moved_by(self, name: str) -> bool:

@@ -24,9 +24,9 @@ def serve(
     """Serve until a signal.
 
     Args:
-        mover: What it does.
-        make_node: Makes its node, again after a failure.
-        reporting: Runs besides.
+        mover: Its description.
+        make_node: Creates its node, also after a failure.
+        reporting: Runs concurrently.
     """
 
     @contextlib.asynccontextmanager

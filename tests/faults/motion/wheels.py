@@ -26,7 +26,7 @@ FAR, NEAR = 1.0, 0.03
 
 
 def own(kind: str, name: str) -> Any:
-    """Return a type of the package that only wheels and their movers have."""
+    """Return a type of a package that only wheels and their movers have."""
     return getattr(importlib.import_module(f"aionode.interfaces.minibot_interfaces.{kind}"), name)
 
 
@@ -64,8 +64,8 @@ class Wheels:
 
     Args:
         node: Its node.
-        report: Records what they are given.
-        tell: Called when they are told to stop, so that the harness learns of it at once.
+        report: Records what they receive.
+        tell: Called when they are told to stop, so that the harness learns it at once.
 
     Attributes:
         distance: How far their target is.

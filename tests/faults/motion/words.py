@@ -1,7 +1,7 @@
-"""The movers and wheels of fault cases, and records of what wheels were given.
+"""The movers and wheels of fault cases, and records of what wheels have received.
 
 A `Mover` commands motion, a `Wheel` obeys; both are part of a `Role`. Each command says when and by
-which process it was sent. What a wheel is given goes to the harness as `Handed`, with a time of the
+which process it was sent. What a wheel receives goes to the harness as `Handed`, with a time of the
 monotonic clock, which all processes of a host share.
 """
 
@@ -14,9 +14,9 @@ import msgspec
 __all__ = ["Asks", "Handed", "Mover", "Program", "Way", "What", "Wheel"]
 
 Asks = Literal["lease", "publisher", "finally", "goal", "goal left", "policy", "policy apart"]
-"""By what it asks for motion: a lease of a publisher, a plain publisher, one whose ``finally``
-publishes a last message, a goal that it awaits, one that it does not await, or the chunks of a
-policy, in a thread or in another process."""
+"""How it requests motion: by a lease of a publisher, by a plain publisher, by one whose ``finally``
+publishes a last message, by a goal that it awaits or does not await, or by the chunks of a policy
+in a thread or in another process."""
 
 Program = Literal["run", "asyncio", "uvicorn", "page"]
 """How it runs: by `aionode.run`, `asyncio.run`, in a route of FastAPI, or as a client of a gateway.
@@ -32,36 +32,36 @@ Way = Literal[
     "mcp http new",
     "mcp http old",
 ]
-"""By which way in it is a client of a gateway; by MCP, with which transport and revision."""
+"""The protocol by which it is a client of a gateway; for MCP, with the transport and revision."""
 
 What = Literal["move", "stop", "silence"]
-"""A command to move; a command to stop, or the end of a goal; a call of ``on_silence``."""
+"""A command to move; a command to stop, or the end of a goal; or a call of ``on_silence``."""
 
 
 class Mover(msgspec.Struct, frozen=True):
-    """What asks for motion, 20 times a second if it is by messages.
+    """A program that requests motion, 20 times a second if by messages.
 
     Attributes:
         topic: The topic or the action.
-        asks: By what.
+        asks: How it requests motion.
         program: How it runs.
         ttl_sec: The time to live of its lease.
         period_s: Time between two commands.
         transient: Whether its publisher keeps its last messages for late subscriptions.
-        port: On which its web server listens; 0 without one.
-        route: The route of it that moves.
-        graceful_s: How long its web server waits for connections at its end; None without limit.
-        cleans_up_s: How long it goes on within its lease after it was cancelled; or what its
-            ``finally`` does before it publishes.
-        old_signals: Whether SIGHUP ends it without cleanup, and so does a second signal, however
-            soon it comes: what aionode's handling of signals is compared with.
-        way: By which way in it drives through a gateway.
-        client: Who it is there, and its token.
-        host: Where the gateway is.
-        seconds: For how long a call by MCP moves at most.
-        has_defaults: Whether it sends what has defaults in its definition, which only the wheels
-            have: see `Wheel`.
-        sends_zeros: Whether it sends zeros in their place.
+        port: The port of its web server; 0 without one.
+        route: The route that moves.
+        graceful_s: How long its web server waits for connections at its end; None for no limit.
+        cleans_up_s: How long it continues within its lease after it was cancelled, or how long its
+            ``finally`` takes before it publishes.
+        old_signals: Whether SIGHUP, or a second signal however soon it comes, ends it without
+            cleanup, for comparison with aionode's handling of signals.
+        way: The protocol by which it drives through a gateway.
+        client: Its identity there, which is also its token.
+        host: The host of the gateway.
+        seconds: How long a call by MCP moves at most.
+        has_defaults: Whether it sends a type whose definition has defaults, which only the wheels
+            know: see `Wheel`.
+        sends_zeros: Whether it sends zeros instead of these defaults.
     """
 
     topic: str
@@ -84,19 +84,20 @@ class Mover(msgspec.Struct, frozen=True):
 
 
 class Wheel(msgspec.Struct, frozen=True):
-    """What obeys.
+    """Wheels, which obey.
 
     Attributes:
         topic: The topic or the action.
-        action: Whether it obeys goals; else messages.
-        silence_sec: After which it is told of silence; 0 if it does not ask.
-        lost_sec: After which it takes the client of a goal for lost; 0 if it does not look.
-        accepts: Whether its server of goals has a callback that accepts to cancel them.
-        continues: Whether it says that the goals of lost clients go on.
-        transient: Whether it asks for what its publishers have kept.
-        has_defaults: Whether its type is one of the package ``minibot_interfaces``, whose fields
-            have defaults: it goes to a target until that is within the tolerance of the goal, or
-            as long as a command says.
+        action: Whether it obeys goals; otherwise it obeys messages.
+        silence_sec: The ``silence_sec`` of its subscription; 0 if it has no ``on_silence``.
+        lost_sec: The ``client_lost_sec`` of its action server; 0 if it does not detect lost
+            clients.
+        accepts: Whether its action server has a ``cancel_callback`` that accepts.
+        continues: Whether its action server has ``on_client_lost="continue"``.
+        transient: Whether it requests the messages that its publishers have kept.
+        has_defaults: Whether its type belongs to the package ``minibot_interfaces``, whose fields
+            have defaults: it drives until the target is within the tolerance of the goal, or for as
+            long as a command says.
     """
 
     topic: str
@@ -110,14 +111,14 @@ class Wheel(msgspec.Struct, frozen=True):
 
 
 class Handed(msgspec.Struct, frozen=True, array_like=True):
-    """What a wheel was handed.
+    """Something that a wheel has received.
 
     Attributes:
         topic: The topic or the action.
         what: What it was.
-        time_s: When.
-        by: The process that asked for it; 0 if nobody says.
-        sent_s: When it was sent; 0 if nobody says.
+        time_s: When it was received.
+        by: The process that requested it; 0 if unknown.
+        sent_s: When it was sent; 0 if unknown.
     """
 
     topic: str
