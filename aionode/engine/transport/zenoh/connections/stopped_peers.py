@@ -1,15 +1,15 @@
 """Gives up connections to processes of this machine that a signal or a debugger has stopped.
 
-Zenoh would notice by its lease: each process tells each other one, again and again, that it is
-alive. With many processes, that is what wakes an idle one. The system knows which processes are
-stopped, so each process looks at the others, which wakes none of them, and sessions that can be
-looked at have a long lease. Peers that cannot look, such as nodes of ROS 2 and those in other
-containers, notice a stopped process by that lease.
+Zenoh would notice by its lease: each process regularly tells every other one that it is alive,
+which is what wakes an idle process among many. The system knows which processes are stopped, so
+each process checks the others without waking them, and sessions that can be checked have a long
+lease. Peers that cannot check, such as nodes of ROS 2 and those in other containers, notice a
+stopped process when that lease ends.
 
-Each process looks at a few others only, so that a hundred do not look at a hundred each. Whoever
-sees that one is stopped tells everyone, and then everyone looks at all peers for a while.
+Each process checks only a few others, so that a hundred do not check a hundred each. A process that
+finds a stopped one tells everyone, and then everyone checks all peers for a while.
 
-A process that waits long for a processor is not stopped, and is not given up.
+A process that waits a long time for a processor is not stopped, and is not given up.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ __all__ = ["StoppedPeers"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LOOK_S: Final = 2.0
-"""The interval of looks, in seconds."""
+"""The interval of checks, in seconds."""
 
 LOOKS: Final = 4
-"""How often in a row a process must be seen stopped: it is given up after 6 to 10 s, as by a lease
-of 10 s. Looks are counted, as this process may have been stopped meanwhile as well."""
+"""Number of consecutive checks that must find a process stopped: it is given up after 6 to 10 s, as
+with a lease of 10 s. Checks are counted, not seconds, as this process may have been stopped too."""
 
 SUCCESSORS: Final = 4
-"""Number of peers that a process always looks at: the next ones in the order of their ids, so that
-as many others look at it. One of them is enough, but some may be stopped with it."""
+"""Number of peers that a process always checks: the next ones in the order of ids, so that as many
+others check it. One of these would be enough, but some may be stopped together with it."""
 
 
 class StoppedPeers:
@@ -62,12 +62,12 @@ class StoppedPeers:
         self._key = f"@aionode/{state.domain_id}/stopped"
         self._told = state.queue(self._be_told, 1)
         self._subscriber: zenoh.Subscriber[None] | None = None
-        # The processes of all peers, as far as they can be looked at.
+        # The processes of all peers that can be checked.
         self._pids: dict[str, int | None] = {}
         self._successors: set[str] = set()
-        # Those that are looked at: the successors, or all of them.
+        # The processes that are checked: the successors, or all of them.
         self._processes: dict[str, WatchedProcess] = {}
-        self._looks_at_all = 0  # how many more times to look at all of them
+        self._looks_at_all = 0  # number of further checks of all of them
         self._looks: dict[str, int] = {}  # how often each was seen stopped, in a row
         self._later = Later()
 

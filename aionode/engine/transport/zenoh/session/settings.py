@@ -52,23 +52,23 @@ BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 late readers."""
 
 GOSSIPING: Final = 4
-"""Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
-those of other programs. One is too few: Zenoh drops gossip on a connection that it is just taking
-into use. With all of them a hundred would send half a million messages.
+"""Number of listed sessions whose gossip introduces sessions that are not listed, such as those of
+other programs. One is too few: Zenoh drops gossip on a connection that is just starting. If all
+gossiped, a hundred sessions would send half a million messages.
 """
 
 
 class SessionLease(NamedTuple):
-    """The time without a sign of a process after which its peers take it for dead.
+    """How long a process may be silent before its peers consider it dead.
 
-    Where a hundred start at once, each is silent for more than ten seconds while it is connected
-    with the others. Those that give it up connect anew, and all of it takes longer still.
+    When a hundred start at once, each is silent for more than ten seconds while it connects with
+    the others. Peers that gave it up would connect again, and everything would take even longer.
 
     Attributes:
-        first_ms: For a process that starts alone, in milliseconds.
-        each_ms: Addition for each other one that was there when it started.
-        most_ms: The limit: any user of the machine can be listed as many processes.
-        keep_alives: The number of signs of life in this time.
+        first_ms: The lease of a process that starts alone, in milliseconds.
+        each_ms: Addition for each other process that was listed when it started.
+        most_ms: The longest lease, as any user of the machine can list any number of sessions.
+        keep_alives: The number of keep-alive messages per lease.
     """
 
     first_ms: int
@@ -78,25 +78,25 @@ class SessionLease(NamedTuple):
 
 
 LEASE: Final = SessionLease(10_000, 500, 60_000, keep_alives=4)
-"""The limit is the lease of ROS 2 nodes."""
+"""The longest one is the lease of ROS 2 nodes."""
 
 WATCHED_LEASE: Final = SessionLease(100_000, 30_000, 3_600_000, keep_alives=2)
-"""That of a session at whose process the others look (`StoppedPeers`).
+"""The lease of a session whose process the others check (`StoppedPeers`).
 
-Signs of life are what wakes an idle process among many. It gets one from each of the others, so
-each of many sends fewer.
+Keep-alive messages are what wakes an idle process among many. It gets them from each of the others,
+so each of many sends fewer.
 """
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
-"""Intervals at which an endpoint that does not answer is dialled again."""
+"""Intervals at which an endpoint that does not answer is redialled."""
 
 
 class Neighbours(Struct, frozen=True):
-    """The other sessions of a machine that lists them, as one sees them that is about to open.
+    """The sessions of this machine, as a session sees them that is about to open.
 
     Attributes:
-        port: Where it will listen itself.
-        others: Where it dials others.
+        port: The port on which it will listen.
+        others: The ports of the others, which it dials.
     """
 
     port: int
@@ -116,7 +116,7 @@ def session_settings(
         network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
         neighbours: What this machine lists; None if it lists nothing.
-        is_watched: Whether the others look at its process, as far as they are on this machine.
+        is_watched: Whether the others on this machine check its process.
     """
     if network.config_file is not None:
         return {}
