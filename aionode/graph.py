@@ -12,7 +12,7 @@ from __future__ import annotations
 import asyncio
 import enum
 from collections import defaultdict
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
 from msgspec import Struct, structs
 
@@ -111,7 +111,7 @@ class Offered(Struct, frozen=True):
     actions: dict[str, list[str]]
 
 
-class Mismatch(NamedTuple):
+class Mismatch(Struct, frozen=True):
     """Why two opposite endpoints of one name do not communicate.
 
     Attributes:

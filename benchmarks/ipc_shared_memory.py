@@ -158,10 +158,12 @@ class End:
             data = DECODE(one.payload).data
             np.frombuffer(data, np.uint64).max()
             return len(data)
-        number, start, size = BufferRef.unpack(one.payload)
+        ref = BufferRef.unpack(one.payload)
         fd = int.from_bytes(ancillary[0][2], sys.byteorder) if ancillary else None
         returned = self._returned
-        view = self._mappings.view(number, start, size, fd, lambda: returned.append(number))
+        view = self._mappings.view(
+            ref.number, ref.start, ref.size, fd, lambda: returned.append(ref.number)
+        )
         self.step("view")
         data = DECODE(view).data
         self.step("decode")

@@ -16,7 +16,9 @@ import asyncio
 import weakref
 from collections import deque
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
+
+from msgspec import Struct
 
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
@@ -143,7 +145,7 @@ class Run:
         self.shared = [*others, (run, reference)][-MOST_CAUSES:]
 
 
-class Sent(NamedTuple):
+class Sent(Struct, frozen=True):
     """A sent item.
 
     Attributes:

@@ -13,7 +13,9 @@ import threading
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple, TextIO
+from typing import TextIO
+
+from msgspec import Struct
 
 from aionode.clock import S_TO_NS
 from aionode.errors import ConfigurationError
@@ -47,7 +49,7 @@ class RosRecord(logging.LogRecord):
     stamp_ns: int
 
 
-class LogEvent(NamedTuple):
+class LogEvent(Struct, frozen=True):
     """One logged message, as passed to a sink: the fields of `rcl_interfaces/msg/Log`.
 
     Attributes:
@@ -149,7 +151,7 @@ class LineFormatter(logging.Formatter):
 # Handlers
 
 
-class ConsoleSettings(NamedTuple):
+class ConsoleSettings(Struct, frozen=True):
     """The settings of the console, from the environment.
 
     Attributes:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence, Sized
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, Protocol
+
+from msgspec import Struct
 
 from aionode.errors import (
     ParameterNotDeclaredException,
@@ -40,7 +42,7 @@ PARAMETER_BYTES: Final = 500
 """Approximate memory of a parameter besides its value."""
 
 
-class ParameterService(NamedTuple):
+class ParameterService(Struct, frozen=True):
     """One service, to be created by ``node.create_service(srv_type, f"~/{name}", callback)``.
 
     Attributes:

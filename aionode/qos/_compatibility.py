@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from enum import IntEnum
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
+
+from msgspec import Struct
 
 from aionode.clock import Duration
 from aionode.qos._profile import (
@@ -35,7 +37,7 @@ PolicyT = TypeVar("PolicyT", bound="QoSPolicyEnum")
 # Compatibility
 
 
-class Incompatibility(NamedTuple):
+class Incompatibility(Struct, frozen=True):
     """A policy in which an offer is weaker than a request.
 
     Attributes:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.engine.reports.limits import heavy_text
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
 
-class EndpointSetup(NamedTuple):
+class EndpointSetup(Struct, frozen=True):
     """What an endpoint uses of its node.
 
     Attributes:
@@ -61,7 +63,9 @@ class Endpoint(Entity):
         self, subject: str, setup: EndpointSetup, stage: EndStage = EndStage.CALLBACKS
     ) -> None:
         super().__init__(subject, stage)
-        self._endpoint, self._graph, self._callbacks, self._affinity, _, self._causes = setup
+        self._endpoint, self._graph = setup.endpoint, setup.graph
+        self._callbacks, self._affinity = setup.callbacks, setup.affinity
+        self._causes = setup.causes
         self.qos_profile = self._endpoint.qos
         self._unwatch: list[Callable[[], None]] = []
         self._unreported: AbstractSet[str] = frozenset()

@@ -17,7 +17,9 @@ from __future__ import annotations
 
 import asyncio
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from aionode._process.concurrency import checkpoint
 from aionode._process.recent import Recent
@@ -61,7 +63,7 @@ ROUTER_S = 2.0
 """A process that leaves this shortly before or after a router may only be unreachable."""
 
 
-class Silence(NamedTuple):
+class Silence(Struct, frozen=True):
     """A program's settings for a topic that falls silent.
 
     Attributes:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from asyncio import CancelledError
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict
+from typing import TYPE_CHECKING, Any, Protocol, TypedDict
+
+from msgspec import Struct
 
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
@@ -345,7 +347,7 @@ class SubscriptionReader(MessageQueue[Any]):
         )
 
 
-class Arrived(NamedTuple):
+class Arrived(Struct, frozen=True):
     """An item of a queue with what identifies its message."""
 
     item: Any

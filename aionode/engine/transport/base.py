@@ -13,7 +13,7 @@ loop runs; other processes can reach them once `Transport.open` has returned.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 
 import msgspec
 
@@ -375,7 +375,7 @@ class Serve(Protocol):
 # Transports as a whole
 
 
-class LinkStatus(NamedTuple):
+class LinkStatus(msgspec.Struct, frozen=True):
     """The links between contexts of the domain, as reported by the contexts.
 
     Attributes:

@@ -8,7 +8,9 @@ may crash on a malformed one, so it is always written; parsing is lenient.
 from __future__ import annotations
 
 import struct
-from typing import Final, NamedTuple
+from typing import Final
+
+from msgspec import Struct
 
 __all__ = ["GID_SIZE", "Attachment", "pack", "unpack", "unpack_fields"]
 
@@ -23,7 +25,7 @@ TIME_LABEL = b"\x10source_timestamp"
 GID_LABEL = b"\x0asource_gid"
 
 
-class Attachment(NamedTuple):
+class Attachment(Struct, frozen=True):
     """The sender of a sample, its sequence number and its time."""
 
     sequence: int

@@ -20,7 +20,10 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Final, NamedTuple
+from typing import Final
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from aionode.graph import EndpointInfo, EndpointKind
 from aionode.qos import (
@@ -79,7 +82,7 @@ REQUEST_ID_SIZE: Final = 20
 REQUEST_MARK: Final = b"rqh"
 
 
-class BridgeToken(NamedTuple):
+class BridgeToken(Struct, frozen=True):
     """A parsed token.
 
     Attributes:
@@ -101,7 +104,7 @@ class BridgeToken(NamedTuple):
     has_history: bool = True
 
 
-class BridgedEndpoint(NamedTuple):
+class BridgedEndpoint(Struct, frozen=True):
     """One endpoint that a token stands for; an action has five of them."""
 
     kind: EndpointKind
@@ -110,7 +113,7 @@ class BridgedEndpoint(NamedTuple):
     qos: QoSProfile
 
 
-class BridgedNode(NamedTuple):
+class BridgedNode(Struct, frozen=True):
     """A node behind a bridge, as the bridge describes it.
 
     Attributes:
@@ -261,7 +264,7 @@ def parse_topic(token: BridgeToken, text: str) -> BridgeToken | None:
         history=HistoryPolicy.KEEP_ALL if kind == "1" else HistoryPolicy.KEEP_LAST,
         depth=max(known_depth, 1),
     )
-    return token._replace(qos=qos, type_hash=type_hash, has_history=bool(history))
+    return replace(token, qos=qos, type_hash=type_hash, has_history=bool(history))
 
 
 def bridged_endpoints(token: BridgeToken) -> list[BridgedEndpoint]:

@@ -14,7 +14,8 @@ receive it.
 from __future__ import annotations
 
 import enum
-from typing import NamedTuple
+
+from msgspec import Struct
 
 from aionode.names import is_full_name, is_type_name
 
@@ -38,7 +39,7 @@ BUFFER_SUFFIX = "_buf_cpu"
 DDS_MARK = "dds_::"
 
 
-class DataKey(NamedTuple):
+class DataKey(Struct, frozen=True):
     """The parsed key of a sample or query."""
 
     domain_id: int

@@ -15,9 +15,10 @@ that ROS does not allow, as any program may declare any token with this prefix.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Final
 
 import xxhash
+from msgspec import Struct
 
 from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
 from aionode.engine.wire._key_expression import dds_type, demangle, mangle, ros_type
@@ -76,7 +77,7 @@ SHARED: Final = 1024
 FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
 
 
-class Token(NamedTuple):
+class Token(Struct, frozen=True):
     """A parsed liveliness token."""
 
     domain_id: int

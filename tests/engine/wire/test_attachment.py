@@ -16,6 +16,7 @@ GOLDEN: dict[str, Any] = json.loads(
     Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
 )["attachment"]
 VALUES = (GOLDEN["seq"], GOLDEN["source_timestamp_ns"], bytes.fromhex(GOLDEN["gid"]))
+PARSED = attachment.Attachment(*VALUES)
 INT64 = st.integers(-(2**63), 2**63 - 1)
 
 
@@ -28,14 +29,16 @@ def test_the_form_of_the_first_jazzy_releases_is_read() -> None:
     """They write the name of each field; later releases do not."""
     legacy = bytes.fromhex(GOLDEN["legacy_jazzy_0.2.0_to_0.2.3"])
 
-    assert attachment.unpack(legacy) == VALUES
+    assert attachment.unpack(legacy) == PARSED
     assert attachment.unpack(legacy.replace(b"source_gid", b"source_dig")) is None
 
 
 @given(INT64, INT64, st.binary(min_size=16, max_size=16), st.binary(max_size=8))
 def test_unpacking_undoes_packing(sequence: int, ns: int, gid: bytes, more: bytes) -> None:
     """Every value survives, and what a later release appends does no harm."""
-    assert attachment.unpack(attachment.pack(sequence, ns, gid) + more) == (sequence, ns, gid)
+    parsed = attachment.unpack(attachment.pack(sequence, ns, gid) + more)
+
+    assert parsed == attachment.Attachment(sequence, ns, gid)
 
 
 @given(st.binary(max_size=90))

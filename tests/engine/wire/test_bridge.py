@@ -63,7 +63,8 @@ def test_no_token_is_of_a_form_that_ends_a_bridge(
         assert not set(token) & set("*?$# \n\0")
         parsed = parse_bridge_token(token)
         assert parsed is not None
-        assert parsed[:4] == (zid, kind, name.strip("/"), type_name)
+        assert (parsed.zid, parsed.kind) == (zid, kind)
+        assert (parsed.key, parsed.type_name) == (name.strip("/"), type_name)
         assert token.count("@") == 2
         if kind[0] == "M":
             assert token.split("/")[6].startswith(":")  # without a key

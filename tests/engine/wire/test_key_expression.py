@@ -54,7 +54,9 @@ def test_keys_are_those_of_rmw_zenoh(
     key = VECTORS["topic_keys"][golden]
 
     assert key_expression.data_key(domain_id, name, type_name, type_hash) == key
-    assert key_expression.parse_data_key(key) == (domain_id, name, type_name, type_hash)
+    assert key_expression.parse_data_key(key) == key_expression.DataKey(
+        domain_id, name, type_name, type_hash
+    )
 
 
 @pytest.mark.parametrize("kind", ["messages", "services"])
@@ -70,8 +72,10 @@ def test_parsing_undoes_writing(domain: int, name: str, type_name: str, type_has
     """What a sample's key says is what its sender wrote."""
     key = key_expression.data_key(domain, name, type_name, type_hash)
 
-    assert key_expression.parse_data_key(key) == (domain, name, type_name, type_hash)
-    assert key_expression.parse_data_key(key_expression.buffer_key(key)) == (
+    assert key_expression.parse_data_key(key) == key_expression.DataKey(
+        domain, name, type_name, type_hash
+    )
+    assert key_expression.parse_data_key(key_expression.buffer_key(key)) == key_expression.DataKey(
         domain,
         name,
         type_name,

@@ -97,7 +97,7 @@ def test_a_publisher_is_read_with_everything_it_says() -> None:
     """The graph shows what the token says."""
     token = liveliness.parse_token(TOKENS[2]["key"])
 
-    assert token == (
+    assert token == liveliness.Token(
         0,
         EndpointInfo(
             kind=EndpointKind.SUBSCRIPTION,
@@ -135,7 +135,7 @@ def test_reading_a_node_undoes_writing(domain_id: int, node: NodeInfo) -> None:
     key = liveliness.node_token(domain_id, node)
 
     assert key.count("/") == 8
-    assert liveliness.parse_token(key) == (domain_id, node)
+    assert liveliness.parse_token(key) == liveliness.Token(domain_id, node)
 
 
 @given(NODES, st.sampled_from(EndpointKind), IDS, NAMES, PROFILE, st.sampled_from(["", "b:c"]))

@@ -528,13 +528,15 @@ class Connection:
             raise FrameError(f"{len(self._descriptors)} descriptors without their frames")
 
     def _map(self, frame: Frame) -> memoryview:
-        number, start, size = BufferRef.unpack(frame.payload)
+        ref = BufferRef.unpack(frame.payload)
         fd = None
         if frame.has_fd:
             if not self._descriptors:
-                raise FrameError(f"expected the descriptor of buffer {number}, got none")
+                raise FrameError(f"expected the descriptor of buffer {ref.number}, got none")
             fd = self._descriptors.popleft()
-        return self._mappings.view(number, start, size, fd, lambda: self._release_soon(number))
+        return self._mappings.view(
+            ref.number, ref.start, ref.size, fd, lambda: self._release_soon(ref.number)
+        )
 
     def _release_soon(self, number: int) -> None:
         """Release a buffer of the other process; called on any thread, within any other call."""

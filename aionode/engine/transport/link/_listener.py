@@ -10,9 +10,11 @@ import struct
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import xxhash
+from msgspec import Struct
+from msgspec.structs import replace
 
 from aionode.clock import S_TO_NS, MachineTime
 from aionode.engine.transport.link._protocol import VERSION
@@ -61,7 +63,7 @@ def host_id() -> str:
     return xxhash.xxh3_64_hexdigest(BOOT_ID.read_bytes())
 
 
-class Advertisement(NamedTuple):
+class Advertisement(Struct, frozen=True):
     """The announcement of a context by which others can link to it.
 
     Attributes:
@@ -99,7 +101,8 @@ class Advertisement(NamedTuple):
 
     def is_near(self, other: Advertisement) -> bool:
         """Return whether the two can be linked."""
-        return self[1:] == other[1:] and self.participant != other.participant
+        alike = replace(self, participant=other.participant) == other
+        return alike and self.participant != other.participant
 
 
 def socket_folder(environ: Mapping[str, str]) -> Path:

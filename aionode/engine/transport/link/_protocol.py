@@ -18,7 +18,7 @@ from __future__ import annotations
 import enum
 import struct
 from collections.abc import Callable, Mapping
-from typing import ClassVar, Final, NamedTuple, Self
+from typing import ClassVar, Final, Self
 
 import msgspec
 
@@ -167,7 +167,7 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
     has_fd: bool = False
 
 
-class BufferRef(NamedTuple):
+class BufferRef(msgspec.Struct, frozen=True):
     """The location of a large payload."""
 
     number: int
@@ -179,7 +179,7 @@ class BufferRef(NamedTuple):
 
     def pack(self) -> bytes:
         """Return it as the payload of a frame."""
-        return BUFFER_REF.pack(*self)
+        return BUFFER_REF.pack(self.number, self.start, self.size)
 
     @classmethod
     def unpack(cls, data: bytes) -> BufferRef:
@@ -192,7 +192,7 @@ class BufferRef(NamedTuple):
             raise FrameError(
                 f"expected a buffer reference of {BUFFER_REF.size} bytes, got {len(data)} bytes"
             )
-        return cls._make(BUFFER_REF.unpack(data))
+        return cls(*BUFFER_REF.unpack(data))
 
 
 def pack(

@@ -24,7 +24,9 @@ from __future__ import annotations
 
 import enum
 from collections import defaultdict, deque
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
+
+from msgspec import Struct
 
 from aionode.engine.transport.base import NOT_INLINE_NS, ReaderRegistration, Registration
 from aionode.engine.transport.drops import Drop
@@ -94,7 +96,7 @@ ZENOH: Final = Route.ZENOH
 LINK: Final = Route.LINK
 
 
-class Message(NamedTuple):
+class Message(Struct, frozen=True):
     """A message that may be held until others have arrived."""
 
     msg: Any
@@ -386,8 +388,14 @@ class RemotePublisher:
             self._hand_over(message, inline_deadline_ns)
 
     def _hand_over(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
-        msg, sequence, source_ns, arrived_ns = message
-        self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns, arrived_ns)
+        self._deliver(
+            message.msg,
+            self.publisher,
+            message.sequence,
+            message.source_ns,
+            inline_deadline_ns,
+            message.arrived_ns,
+        )
 
     def _hold(self, message: Message) -> None:
         self._held[message.sequence] = message

@@ -13,7 +13,9 @@ from __future__ import annotations
 import enum
 import struct
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
+
+from msgspec import Struct
 
 __all__ = [
     "MAX_RANGES",
@@ -58,7 +60,7 @@ class SubmessageKind(enum.IntEnum):
 KINDS: Final = {int(kind): kind for kind in SubmessageKind}
 
 
-class Submessage(NamedTuple):
+class Submessage(Struct, frozen=True):
     """A received submessage."""
 
     kind: SubmessageKind

@@ -7,9 +7,10 @@ import logging
 from abc import abstractmethod
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 import zenoh
+from msgspec import Struct
 
 from aionode._process.later import Later
 from aionode.clock import MachineTime, perf_ns
@@ -71,7 +72,7 @@ class LingeringWriter(Protocol):
         """Undeclare it now, and count the messages that were not delivered."""
 
 
-class EndpointNames(NamedTuple):
+class EndpointNames(Struct, frozen=True):
     """The names by which others know one of our endpoints.
 
     Attributes:

@@ -170,12 +170,12 @@ class ZenohTransport(Transport):
     async def _open(self, graph: Graph) -> None:
         try:
             await self._local_router.open()
-            session, expected, self._presence, self._dialled = await open_session(
-                self.network, self._state.participant
-            )
+            opened = await open_session(self.network, self._state.participant)
         except BaseException:
             await asyncio.shield(self._local_router.close())
             raise
+        session, expected = opened.session, opened.expected
+        self._presence, self._dialled = opened.presence, opened.dialled
         self._state.waker.open(asyncio.get_running_loop())
         # Before waiting for others, so that peers connecting meanwhile see everything. After a
         # failure from here on, `close` closes the session.
@@ -257,9 +257,10 @@ class ZenohTransport(Transport):
                 if port in unconnected:
                     silent.append(f"a process that listens at port {port} does not answer")
             elif process.is_stopped or port in unconnected:
-                pid, command, _ = process
-                why = f"is stopped (kill -CONT {pid})" if process.is_stopped else "does not answer"
-                silent.append(f"process {pid} ({command}) {why}")
+                why = "does not answer"
+                if process.is_stopped:
+                    why = f"is stopped (kill -CONT {process.pid})"
+                silent.append(f"process {process.pid} ({process.command}) {why}")
         return silent
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:

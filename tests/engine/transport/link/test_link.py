@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from aionode._process.concurrency import checkpoint
 from aionode.content_filter import ContentFilterOptions
@@ -666,9 +667,9 @@ def test_an_advertisement_says_which_contexts_can_be_linked() -> None:
     """Same host, same user, same version; any other text is rejected."""
     own = listener.Advertisement.own("1a")
     assert listener.Advertisement.parse(own.text()) == own
-    assert own.is_near(own._replace(participant="2b"))
+    assert own.is_near(replace(own, participant="2b"))
     assert not own.is_near(own)
-    for other in (own._replace(host="x"), own._replace(uid=own.uid + 1)):
-        assert not own.is_near(other._replace(participant="2b"))
+    for other in (replace(own, host="x"), replace(own, uid=own.uid + 1)):
+        assert not own.is_near(replace(other, participant="2b"))
     for text in ("", "1a/link", "../x/link/1/h/0", "1a/link/-1/h/0", f"{'1' * 33}/link/1/h/0"):
         assert listener.Advertisement.parse(text) is None

@@ -26,9 +26,10 @@ import logging
 import socket
 import threading
 from contextlib import closing, suppress
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import zenoh
+from msgspec import Struct
 
 from aionode.engine.transport.network import DiscoveryRange
 from aionode.engine.transport.send_thread import start_thread
@@ -84,7 +85,7 @@ CHECKS: Final = 3
 """Number of comparisons of the graph after connections have come or gone."""
 
 
-class GossipSource(NamedTuple):
+class GossipSource(Struct, frozen=True):
     """A connection to a gossip source.
 
     Attributes:

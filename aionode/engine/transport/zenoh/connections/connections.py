@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import zenoh
+from msgspec import Struct
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.loop_waker import ThreadsafeQueue
@@ -40,7 +41,7 @@ REMEMBERED: Final = 10_000
 """Number of lost sessions to remember: others may open and close any number."""
 
 
-class ConnectionChange(NamedTuple):
+class ConnectionChange(Struct, frozen=True):
     """A connection that was made or lost.
 
     Attributes:

@@ -31,9 +31,10 @@ import sys
 import threading
 from contextlib import suppress
 from stat import S_ISREG
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import zenoh
+from msgspec import Struct
 
 from aionode._process.socket_queue import queued_bytes
 
@@ -114,7 +115,7 @@ known: dict[Pair, Descriptor] = {}
 """Descriptors of connections found before, so that most searches read neither list."""
 
 
-class Pair(NamedTuple):
+class Pair(Struct, frozen=True):
     """The two addresses of a connection."""
 
     local: Address
@@ -206,7 +207,7 @@ def told_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
     inodes = {}
     with suppress(OSError), socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, SOCK_DIAG) as system:
         for pair in pairs:
-            (local, port), (remote, remote_port) = pair
+            (local, port), (remote, remote_port) = pair.local, pair.remote
             family = socket.AF_INET if len(local) == 4 else socket.AF_INET6
             addresses = ADDRESSES.pack(port, remote_port, local, remote)
             request = REQUEST.pack(family, socket.IPPROTO_TCP, 0, ANY_STATE)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from functools import partial
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import zenoh
+from msgspec import Struct
 
 from aionode._process.later import Later
 from aionode.clock import perf_ns
@@ -96,7 +97,7 @@ class Check:
         self.failed = False
 
 
-class Change(NamedTuple):
+class Change(Struct, frozen=True):
     """The declaration or undeclaration of a token.
 
     Attributes:

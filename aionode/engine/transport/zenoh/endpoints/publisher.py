@@ -69,8 +69,9 @@ class ZenohWriter(Declaration, Writer):
     _stop: ZenohStop | None = None  # of a lease, while it is being repeated
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
-        self._key, token, gid = state.names_of(endpoint)
-        super().__init__(state, token, gid)
+        names = state.names_of(endpoint)
+        super().__init__(state, names.token, names.gid)
+        self._key = names.key
         self.endpoint = endpoint
         qos = endpoint.qos
         self._msg_type = msg_type

@@ -101,8 +101,9 @@ class ZenohServer(Declaration):
         srv_type: type[Any],
         serve: Serve,
     ) -> None:
-        self.key, token, gid = state.names_of(endpoint)
-        super().__init__(state, token, gid)
+        names = state.names_of(endpoint)
+        super().__init__(state, names.token, names.gid)
+        self.key = names.key
         self.endpoint = endpoint
         self.srv_type = srv_type
         self._serve = serve
@@ -307,8 +308,9 @@ class ZenohRequester(Declaration, Requester):
     target: ClassVar[zenoh.QueryTarget] = zenoh.QueryTarget.ALL_COMPLETE
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, srv_type: type[Any]) -> None:
-        self.key, token, gid = state.names_of(endpoint)
-        super().__init__(state, token, gid)
+        names = state.names_of(endpoint)
+        super().__init__(state, names.token, names.gid)
+        self.key = names.key
         self.endpoint = endpoint
         self.srv_type = srv_type
         self.unanswered: set[ZenohCall] = set()

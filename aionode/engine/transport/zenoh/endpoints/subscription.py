@@ -71,8 +71,9 @@ class ZenohReader(Declaration):
         transient = is_transient(endpoint.qos)
         self._second_key = self._buffers and not transient and self.recovers
         backends = CPU_BACKEND if self._second_key else ""
-        self._key, token, gid = state.names_of(endpoint, backends)
-        super().__init__(state, token, gid)
+        names = state.names_of(endpoint, backends)
+        super().__init__(state, names.token, names.gid)
+        self._key = names.key
         self.endpoint = endpoint
         self._transient = transient
         # The history comes at once, and a message's lifespan is in its publisher's token.
@@ -96,7 +97,7 @@ class ZenohReader(Declaration):
         )
         self._numbers = TargetNumbers(self._count_targets) if self._second_key else None
         self._stateful: StatefulReader | None = None
-        if reliable and token and self.recovers:
+        if reliable and names.token and self.recovers:
             span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
             self._stateful = StatefulReader(
                 self.gid, self, perf_ns, span, has_history=self._transient

@@ -20,7 +20,9 @@ import socket
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
+
+from msgspec import Struct
 
 from aionode._process.stopped import is_stopped
 from aionode.engine.transport.network import udp_sockets
@@ -85,7 +87,7 @@ def groups() -> set[int]:
     return found
 
 
-class LocalProcess(NamedTuple):
+class LocalProcess(Struct, frozen=True):
     """The process of a listed session.
 
     Attributes:

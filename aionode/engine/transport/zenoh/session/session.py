@@ -9,9 +9,10 @@ import selectors
 import socket
 import threading
 from contextlib import ExitStack, closing, suppress
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import zenoh
+from msgspec import Struct
 from msgspec.structs import replace
 
 from aionode.clock import perf_ns
@@ -218,7 +219,7 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
     return speaking
 
 
-class Opened(NamedTuple):
+class Opened(Struct, frozen=True):
     """A session, and associated data.
 
     Attributes:
