@@ -15,6 +15,7 @@ import traceback
 from collections.abc import Callable, Coroutine, Sequence
 from typing import Any, Final, Self
 
+from aionode._process.imports import program_has_frozen
 from aionode._process.signals import signals_to, woken_by_signals
 from aionode._process.tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
@@ -33,9 +34,6 @@ LoopFactory = Callable[[], asyncio.AbstractEventLoop]
 
 STARTED_SEC = 1.0
 """By then a program has imported and created most of what it keeps."""
-
-FROZEN_BY_PYTHON = 1000
-"""Python 3.12 itself freezes 375 objects at the start; a program freezes thousands."""
 
 
 def run(
@@ -280,7 +278,7 @@ class Freeze:
 
     def __call__(self) -> None:
         """Freeze all objects, unless the program has frozen some or has disabled collection."""
-        if gc.isenabled() and gc.get_freeze_count() < FROZEN_BY_PYTHON:
+        if gc.isenabled() and not program_has_frozen():
             freeze_objects()
             self._count = gc.get_freeze_count()
 

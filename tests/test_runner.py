@@ -16,6 +16,7 @@ import pytest
 
 import aionode
 from aionode import runner
+from aionode._process import imports
 from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, ConfigurationError
 from aionode.node import Node
@@ -201,7 +202,7 @@ def nothing_is_frozen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
     To look for garbage in half a million objects would take a second.
     """
-    monkeypatch.setattr("aionode.runner.FROZEN_BY_PYTHON", gc.get_freeze_count() + 100)
+    monkeypatch.setattr("aionode._process.imports.FROZEN_BY_PYTHON", gc.get_freeze_count() + 100)
     yield
     gc.freeze()
 
@@ -231,7 +232,7 @@ def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     finally:
         gc.unfreeze()
 
-    assert counts[0] > runner.FROZEN_BY_PYTHON + len(kept) // 2
+    assert counts[0] > imports.FROZEN_BY_PYTHON + len(kept) // 2
     assert before is after is is_frozen_before
 
 
@@ -263,7 +264,7 @@ def test_what_the_program_freezes_while_it_runs_stays_frozen(
 
 def is_frozen() -> bool:
     """Whether more is frozen than Python 3.12 freezes itself."""
-    return gc.get_freeze_count() > runner.FROZEN_BY_PYTHON
+    return gc.get_freeze_count() > imports.FROZEN_BY_PYTHON
 
 
 @pytest.mark.usefixtures("nothing_is_frozen")
@@ -272,7 +273,7 @@ async def test_frozen_objects_are_left_out_of_collections() -> None:
     kept: list[list[int]] = [[] for _ in range(1000)]
     before = gc.get_freeze_count()
     try:
-        aionode.freeze_objects()
+        runner.freeze_objects()
         assert gc.get_freeze_count() >= before + len(kept)
         assert not any(each is kept for each in gc.get_objects())
     finally:
