@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -89,7 +89,6 @@ class Publisher(Endpoint, Generic[MsgT]):
     ) -> None:
         super().__init__(f"publisher of {setup.endpoint.name}", setup, EndStage.LAST)
         self.msg_type = msg_type
-        self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
         self._time_base = time_base
         self._monitor: PublisherMonitor | None = None  # if a policy or the program needs one
@@ -109,7 +108,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             notes.append(partial(self._causes.note, "message", Party.of(self._endpoint)))
         self._noting: tuple[Writer, ...] = ()
         if notes:
-            self._noting = (NotingWriter(writers, self._check, notes),)
+            self._noting = (NotingWriter(writers, checker(msg_type), notes),)
         self._leave_out_placeholders()
         for writer in writers:
             writer.when_replaced(self._leave_out_placeholders)
@@ -183,6 +182,11 @@ class Publisher(Endpoint, Generic[MsgT]):
             error.add_note(f"published by {self._subject}")
             raise
         stats.published = sequence
+
+    @cached_property
+    def _check(self) -> Callable[[Any], None]:
+        """Raises what `publish` raises for a message that no writer checks."""
+        return checker(self.msg_type)
 
     def _fitting(self, msg: Any) -> Any:
         """Return `msg`, decoded if bytes; TypeError if it is of an unrelated class."""
