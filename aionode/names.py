@@ -189,7 +189,8 @@ def token_problem(name: str) -> Problem | None:
             "topic name must not have a tilde '~' that is not followed by a forward slash '/'",
             1,
         )
-    if match := re.search("/(?=[0-9])", name):
+    starts_with_digit = any(is_digit(token[:1]) for token in name.split("/"))
+    if starts_with_digit and (match := re.search("/(?=[0-9])", name)):
         return "topic name token must not start with a number", match.end()
     return None
 
@@ -205,6 +206,16 @@ def full_name_problem(
     if name[-1] == "/":
         unless = ", unless only a '/'" if what == "namespace" else ""
         return f"{what} must not end with a '/'{unless}", len(name) - 1
+    if not all(map(is_token, name[1:].split("/"))):
+        return part_problem(name, what)
+    if len(name) > max_length:
+        subject = "topic length" if what == "topic name" else what
+        return f"{subject} should not exceed '{max_length}'", max_length - 1
+    return None
+
+
+def part_problem(name: str, what: str) -> Problem | None:
+    """Return the problem of a name's characters, or of the first character of a token."""
     if match := re.search("[^A-Za-z0-9_/]", name):
         return (
             f"{what} must not contain characters other than alphanumerics, '_', or '/'",
@@ -215,9 +226,6 @@ def full_name_problem(
         if name[index] == "/":
             return f"{what} must not contain repeated '/'", index
         return f"{what} must not have a token that starts with a number", index
-    if len(name) > max_length:
-        subject = "topic length" if what == "topic name" else what
-        return f"{subject} should not exceed '{max_length}'", max_length - 1
     return None
 
 
@@ -225,7 +233,7 @@ def node_name_problem(name: str) -> Problem | None:
     """Return the rule of rmw that a node name breaks, or None."""
     if not name:
         return "node name must not be empty", 0
-    if match := re.search("[^A-Za-z0-9_]", name):
+    if not is_token(name) and (match := re.search("[^A-Za-z0-9_]", name)):
         return (
             "node name must not contain characters other than alphanumerics or '_'",
             match.start(),
@@ -249,6 +257,11 @@ def name_error(
 def is_digit(char: str) -> bool:
     """Return whether `char` is an ASCII digit; str.isdigit() accepts those of all scripts."""
     return "0" <= char <= "9"
+
+
+def is_token(text: str) -> bool:
+    """Return whether `text` is ASCII letters, digits and ``_``, and does not start with a digit."""
+    return text.isascii() and text.isidentifier()
 
 
 def is_word(char: str) -> bool:
@@ -284,7 +297,7 @@ def expand(name: str, node_name: str, namespace: str, *, is_service: bool = Fals
             raise name_error(name, (problem, match.start()), is_service=is_service)
         return value
 
-    expanded = re.sub(r"\{[^}]*\}", fill_in, name)
+    expanded = re.sub(r"\{[^}]*\}", fill_in, name) if "{" in name else name
     return absolute(expanded, node_name, namespace)
 
 

@@ -17,10 +17,11 @@ from __future__ import annotations
 
 import base64
 import re
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
+
+from msgspec import Struct
 
 from aionode._process.bounded_files import read_file
 from aionode._process.bounded_yaml import VALUES_VARIABLE, fast_loader, most_values
@@ -74,8 +75,7 @@ DEEPEST = 100  # nested mappings: more parts than any name has, few enough for P
 NODE_PART = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
 
 
-@dataclass(frozen=True, slots=True)
-class ParameterRule:
+class ParameterRule(Struct, frozen=True):
     """One parameter for the nodes whose full name matches.
 
     Attributes:
@@ -88,7 +88,7 @@ class ParameterRule:
     node: str
     name: str
     value: ParameterValueType
-    typed: str = field(default="", compare=False)
+    typed: str = ""
 
     def matches(self, node_name: str) -> bool:
         """Return whether the rule is for the node with this full name."""

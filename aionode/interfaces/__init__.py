@@ -69,7 +69,7 @@ PARTS = {
 LONGEST_NAME = 300
 """Longer names are compared with none: that takes time with their length."""
 
-LISTED = re.compile(r"^__all__ = \[(.*?)\]", re.DOTALL | re.MULTILINE)
+LISTED = r"(?ms)^__all__ = \[(.*?)\]"
 """Where a generated module lists its types."""
 
 CLOSE = 0.85
@@ -250,7 +250,7 @@ def type_names_of(package: str, kind: str) -> set[str]:
         if spec is None:
             return set(types_written(package, kind))
         if isinstance(spec.loader, SourceFileLoader):
-            listed = LISTED.search(spec.loader.get_source(module_name) or "")
+            listed = re.search(LISTED, spec.loader.get_source(module_name) or "")
             if listed is not None:
                 return {*re.findall(r'"(\w+)"', listed[1]), *types_written(package, kind)}
     return set(types_of(package, kind))

@@ -131,7 +131,8 @@ class LineFormatter(logging.Formatter):
 
     def __init__(self, text: str = DEFAULT_FORMAT) -> None:
         super().__init__()
-        text = re.sub(r"\\[abnrt]", lambda match: ESCAPES[match[0]], text)
+        for escape, character in ESCAPES.items():
+            text = text.replace(escape, character)
         self._values: list[Callable[[logging.LogRecord], object]] = []
         self._template = re.sub(r"\{(\w+)\}", self._place_of, text.replace("%", "%%"))
 

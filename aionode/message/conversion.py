@@ -32,7 +32,7 @@ LONGEST_FIELD = 100
 
 MessageT = TypeVar("MessageT", bound=Message)
 
-FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
+FLOAT_STRINGS = r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+"
 """Strings accepted as floats: NaN and infinity in JSON, and 1e5, which is text in YAML 1.1."""
 
 
@@ -276,5 +276,5 @@ def scalar_from(type_: FieldType, value: object, path: str) -> object:
     if type_.kind == "byte" and not isinstance(value, bytes):
         return bytes((fit(FieldType("uint8"), value, path),))
     if type_.kind in {"float32", "float64"} and isinstance(value, str):
-        return float(value) if FLOAT_STRINGS.fullmatch(value) else value
+        return float(value) if re.fullmatch(FLOAT_STRINGS, value) else value
     return value

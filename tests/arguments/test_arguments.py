@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from aionode.arguments import (
     Arguments,
@@ -116,7 +117,9 @@ def test_a_bare_remap_rule_outside_is_read_with_a_warning() -> None:
 )
 def test_a_parameter_has_a_name_a_value_and_maybe_a_node(flag: str, rule: ParameterRule) -> None:
     """The value is YAML."""
-    assert parse(f"--ros-args {flag}").parameter_rules == (rule,)
+    (parsed,) = parse(f"--ros-args {flag}").parameter_rules
+
+    assert parsed == replace(rule, typed=flag.split()[1])
 
 
 def test_a_log_level_is_for_all_or_for_one_logger_and_the_last_wins() -> None:

@@ -7,14 +7,13 @@ Pure functions; nothing is connected here. Every transport between processes use
 from __future__ import annotations
 
 import enum
-import json
 import os
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from msgspec import Struct
+import msgspec
 
 from aionode._process.stopped import pid_space
 from aionode.clock import perf_ns
@@ -102,7 +101,7 @@ LEAST_BYTES: Final = 65_536
 """The minimum of either limit: messages up to this size are sent at once."""
 
 
-class Network(Struct, frozen=True):
+class Network(msgspec.Struct, frozen=True):
     """The network settings of a context.
 
     Attributes:
@@ -191,7 +190,9 @@ def network_from(
     config_source = "ZENOH_SESSION_CONFIG_URI"
     config_file = environ.get(config_source) or None
     if isinstance(config, Mapping):
-        overrides += tuple((key, json.dumps(value)) for key, value in config.items())
+        overrides += tuple(
+            (key, msgspec.json.encode(value).decode()) for key, value in config.items()
+        )
         override_source = "config"
     elif config is not None:
         config_file = str(config)

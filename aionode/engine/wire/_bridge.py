@@ -18,7 +18,6 @@ bridge with a certain namespace would not survive is detected by `takes_for_its_
 
 from __future__ import annotations
 
-import json
 import re
 from typing import Final
 
@@ -326,6 +325,8 @@ def parse_node(key: str, payload: bytes) -> BridgedNode | None:
     gid, name = chunks[4].replace(".", ""), chunks[5].replace(SLASH, "/").strip("/")
     if not re.match(NAME, name):
         return None
+    import json  # nodes that meet no bridge need none
+
     try:
         described = json.loads(payload)
         endpoints = {

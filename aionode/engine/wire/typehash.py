@@ -6,9 +6,10 @@ They are part of the keys of topics and services: only endpoints with equal hash
 from __future__ import annotations
 
 import hashlib
-import json
 from functools import cache
 from typing import Any
+
+import msgspec
 
 from aionode.engine.wire._type_description import describe, description_message, referenced_types
 from aionode.message import unserialized
@@ -26,6 +27,6 @@ def type_hash(cls: type[Any]) -> str:
     Raises:
         TypeError: `cls` is not such a class.
     """
-    # ROS 2 hashes exactly this output of json.dumps, including the key order and spaces.
-    text = json.dumps(describe(unserialized(cls)))
-    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+    # ROS 2 hashes exactly the output of json.dumps, including the key order and spaces.
+    compact = msgspec.json.encode(describe(unserialized(cls)))
+    return "RIHS01_" + hashlib.sha256(msgspec.json.format(compact, indent=0)).hexdigest()

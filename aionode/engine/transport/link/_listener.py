@@ -31,7 +31,7 @@ BACKLOG: Final = 1024
 UNIX_SOCKETS: Final = Path("/proc/net/unix")
 """Lists the Unix sockets of this system or container, with the paths they are bound to."""
 
-SOCKET_ID: Final = re.compile(rb"/([0-9a-f]{1,32})\.(?:sock|new)$", re.MULTILINE)
+SOCKET_ID: Final = rb"(?m)/([0-9a-f]{1,32})\.(?:sock|new)$"
 """The id of a context in the path of its socket, at the end of a line of that list."""
 
 CREDENTIALS: Final = struct.Struct("3i")
@@ -116,9 +116,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     if runtime:
         folder = Path(runtime) / "aionode"
     else:
-        import tempfile  # it loads archives, which few programs need
-
-        folder = Path(tempfile.gettempdir()) / f"aionode-{os.getuid()}"
+        folder = temporary_folder(environ) / f"aionode-{os.getuid()}"
     size = len(os.fsencode(folder)) + NAME_BYTES
     if size > MAX_PATH_BYTES:  # some contexts with shorter ids would fit
         raise TransportError(
@@ -142,6 +140,20 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
             "XDG_RUNTIME_DIR to a folder that is"
         )
     return folder
+
+
+def temporary_folder(environ: Mapping[str, str]) -> Path:
+    """Return the folder of `tempfile.gettempdir`, importing `tempfile` only if it has to search.
+
+    It loads random numbers and archives, which take as long as to open Zenoh.
+    """
+    named = (environ.get(name) for name in ("TMPDIR", "TEMP", "TMP"))
+    folder = next(filter(None, named), "/tmp")  # noqa: S108  # checked by `socket_folder`
+    if os.access(folder, os.W_OK | os.X_OK):
+        return Path(folder).absolute()
+    import tempfile
+
+    return Path(tempfile.gettempdir())
 
 
 def is_own_user(sock: socket.socket) -> bool:
@@ -210,16 +222,20 @@ class Listener:
 
     def _remove_dead(self) -> None:
         """Remove the sockets of processes that were killed."""
-        for path in self._folder.glob("*.new"):
+        files = list(self._folder.iterdir())
+        for path in files:
+            if path.suffix != ".new":
+                continue
             with suppress(OSError):  # another process was faster
                 # A socket only has this name until it listens.
                 age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
                 if age_ns > NEW_S * S_TO_NS:
                     path.unlink()
-        paths = [*self._folder.glob("*.sock")]
+        paths = [path for path in files if path.suffix == ".sock"]
         listed: set[bytes] = set()
         with suppress(OSError):  # thousands of lines if there are many links
-            listed.update(SOCKET_ID.findall(UNIX_SOCKETS.read_bytes() if paths else b""))
+            if paths:
+                listed.update(re.findall(SOCKET_ID, UNIX_SOCKETS.read_bytes()))
         for path in paths:
             if path.stem.encode() in listed:
                 continue  # dialling all live ones would keep them busy when many start

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from contextlib import suppress
 from functools import partial
@@ -206,6 +205,8 @@ class BridgeWatcher:
             loop = asyncio.get_running_loop()
             loop.call_later(delay_s, self._ask_again, zid, asked, delays_s)
             return
+        import json  # nodes that meet no bridge need none
+
         namespace, name = "/", NODE_NAME
         for _, payload in replies:
             with suppress(ValueError, AttributeError):

@@ -5,11 +5,11 @@ A probe is a short-lived session that reads the tokens seen by one endpoint.
 
 from __future__ import annotations
 
-import json
 import os
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
 import zenoh
 
 from aionode.engine.transport.network import DiscoveryRange
@@ -91,7 +91,7 @@ def load_config(
             fits = f"use the path of a Zenoh configuration (JSON5): {reason(error)}"
             raise ConfigurationError(network.config_source, path, fits) from error
     for key, value in settings.items():
-        config.insert_json5(key, json.dumps(value))
+        config.insert_json5(key, as_json(value))
     for key, text in network.overrides:
         try:
             config.insert_json5(key, text)
@@ -99,10 +99,15 @@ def load_config(
             fits = f"use key paths and values of Zenoh's configuration: {reason(error)}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
     for key, value in last.items():
-        config.insert_json5(key, json.dumps(value))
+        config.insert_json5(key, as_json(value))
     if participant is not None:
-        config.insert_json5("id", json.dumps(participant))
+        config.insert_json5("id", as_json(participant))
     return config
+
+
+def as_json(value: object) -> str:
+    """Return a value as Zenoh reads it."""
+    return msgspec.json.encode(value).decode()
 
 
 def is_probe(zid: str) -> bool:

@@ -71,7 +71,7 @@ STREAMS: Final = {"tcp", "tls", "ws", "wss"}
 
 EVENT_POLL: Final = "anon_inode:[eventpoll]"
 
-POLLED: Final = re.compile(r"^tfd: +(\d+) events: +8000201d .* ino:([0-9a-f]+) ", re.MULTILINE)
+POLLED: Final = r"(?m)^tfd: +(\d+) events: +8000201d .* ino:([0-9a-f]+) "
 """A socket for which an epoll instance waits like that of Zenoh's runtime: for everything but
 urgent data (IN, OUT, ERR, HUP, RDHUP), edge-triggered (ET)."""
 
@@ -278,7 +278,9 @@ def polled_by_zenoh() -> set[Descriptor]:
         if target == EVENT_POLL:
             with suppress(OSError), open(f"{DETAILS}/{number}") as details:  # noqa: PTH123
                 text = details.read()
-                polled.update((int(number), int(ino, 16)) for number, ino in POLLED.findall(text))
+                polled.update(
+                    (int(number), int(ino, 16)) for number, ino in re.findall(POLLED, text)
+                )
     return polled
 
 

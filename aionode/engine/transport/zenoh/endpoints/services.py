@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -73,11 +72,15 @@ FRESH_NS = 100_000_000
 
 def error_payload(error_type: str, error_text: str) -> bytes:
     """Return an error in the form that is sent to clients."""
+    import json  # only errors need it
+
     return json.dumps({"type": error_type, "text": error_text}).encode()
 
 
 def parse_error(payload: bytes, service: str) -> ServiceError:
     """Parse an error from a server; it has a type if the server runs aionode."""
+    import json  # only errors need it
+
     text = payload.decode(errors="replace")
     try:
         fields = json.loads(text)
