@@ -14,6 +14,7 @@ a launch file ends in a traceback, or never.
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import subprocess
 import sys
@@ -42,6 +43,7 @@ class Aionode(NamedTuple):
         return subprocess.run(
             [self.python, "-P", "-m", "aionode", *arguments],
             cwd=clone,
+            env={"USER": "robot"} | os.environ,  # containers have no USER, and every session has
             stdin=subprocess.DEVNULL,
             capture_output=True,
             check=False,

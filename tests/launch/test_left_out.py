@@ -90,6 +90,20 @@ def test_without_the_option_the_first_of_them_is_an_error_that_says_what_it_is(
         _ = Plan(files.write("a.launch.py", text)).steps
 
 
+def test_a_missing_module_adds_nothing_to_a_list(files: Files) -> None:
+    """As where a launch file imports the arguments of a driver's own launch file."""
+    text = """
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+import rs_launch
+
+def generate_launch_description():
+    driver = [ExecuteProcess(cmd=["driver"])]
+    return LaunchDescription(rs_launch.declared() + driver + rs_launch.others())
+"""
+    assert [each["argv"] for each in records(files, text) if "argv" in each] == [["driver"]]
+
+
 WINDOWS = """
 from launch import LaunchDescription
 from launch.actions import *

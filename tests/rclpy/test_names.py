@@ -135,7 +135,8 @@ SEEN = {
     "rclpy.subscription": "MsgType",
     "rclpy.timer": "Clock",
     "rclpy.type_support": "FeedbackMessage GetResultServiceResponse",
-    "tf2_geometry_msgs": "PointStamped PoseStamped TransformStamped",
+    "tf2_geometry_msgs": "Point PointStamped Pose PoseStamped PoseWithCovarianceStamped "
+    "TransformStamped Vector3Stamped",
     "tf2_geometry_msgs.tf2_geometry_msgs": "PoseStamped",
     "tf2_ros": "Duration PointStamped PoseStamped TFMessage Time TransformStamped",
     "tf2_ros.buffer_interface": "TransformStamped",

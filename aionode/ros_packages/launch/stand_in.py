@@ -20,8 +20,9 @@ AIONODE: Final = str(Path(__file__).parents[2])
 class StandIn(LaunchDescriptionEntity):
     """An object that a launch file takes from a missing module or package, or creates with it.
 
-    It has every attribute and can be called, and is not a number, list or text; as text it is a
-    path that does not exist, so that code that cannot do without it names the missing module.
+    It has every attribute and can be called, and is not a number, list or text. As text it is a
+    path that does not exist, so that code that cannot do without it names the missing module; with
+    a list it adds nothing.
     """
 
     def __init__(self, name: str) -> None:
@@ -72,11 +73,11 @@ class StandIn(LaunchDescriptionEntity):
 
     __str__ = __fspath__ = __repr__
 
-    def __add__(self, other: Any) -> str:
-        return f"{self}{other}"
+    def __add__(self, other: Any) -> Any:
+        return other if isinstance(other, list) else f"{self}{other}"
 
-    def __radd__(self, other: Any) -> str:
-        return f"{other}{self}"
+    def __radd__(self, other: Any) -> Any:
+        return other if isinstance(other, list) else f"{other}{self}"
 
 
 def package_of(name: str) -> str:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from tf2_geometry_msgs.tf2_geometry_msgs import (
+    Point,
     PointStamped,
+    Pose,
     PoseStamped,
+    PoseWithCovarianceStamped,
     TransformStamped,
+    Vector3Stamped,
     do_transform_point,
     do_transform_polygon_stamped,
     do_transform_pose,
@@ -19,9 +23,13 @@ from tf2_geometry_msgs.tf2_geometry_msgs import (
 )
 
 __all__ = [
+    "Point",
     "PointStamped",
+    "Pose",
     "PoseStamped",
+    "PoseWithCovarianceStamped",
     "TransformStamped",
+    "Vector3Stamped",
     "do_transform_point",
     "do_transform_polygon_stamped",
     "do_transform_pose",

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from geometry_msgs.msg import PointStamped, PoseStamped, TransformStamped
+from geometry_msgs.msg import (
+    Point,
+    PointStamped,
+    Pose,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+    Vector3Stamped,
+)
 
 from aionode.interfaces.geometry_msgs import msg as geometry
 from aionode.tf import do_transform
@@ -12,9 +20,13 @@ from rosidl_generator_py import from_aionode, message_class, to_aionode
 from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
 
 __all__ = [
+    "Point",
     "PointStamped",
+    "Pose",
     "PoseStamped",
+    "PoseWithCovarianceStamped",
     "TransformStamped",
+    "Vector3Stamped",
     "do_transform_point",
     "do_transform_polygon_stamped",
     "do_transform_pose",
