@@ -26,7 +26,13 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "hardware_spawner": "_ros2_control.hardware_spawner",
         "ros2_control_node": "_ros2_control.manager",
         "spawner": "_ros2_control.spawner",
+        "spawner.py": "_ros2_control.spawner",
         "unspawner": "_ros2_control.unspawner",
+        "unspawner.py": "_ros2_control.unspawner",
+    },
+    **{
+        package: {"listener": "_demo_nodes.listener", "talker": "_demo_nodes.talker"}
+        for package in ("demo_nodes_cpp", "demo_nodes_py")
     },
     "diagnostic_aggregator": {
         "add_analyzer": "_diagnostics.add_analyzer",
@@ -38,6 +44,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
+    "nav2_map_server": {"map_server": "_map_server.map_server"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "rosbridge_server": {"rosbridge_websocket": "_bridges.rosbridge_websocket"},
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
@@ -71,6 +78,10 @@ A package without executables has data only.
 """
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
+    "demo_nodes_cpp": {
+        "demo_nodes_cpp::Listener": ("_demo_nodes.listener:Listener", "listener"),
+        "demo_nodes_cpp::Talker": ("_demo_nodes.talker:Talker", "talker"),
+    },
     "image_transport": {
         "image_transport::Republisher": ("_camera.republish:Republisher", "image_republisher")
     },
@@ -80,6 +91,9 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
             "_lifecycle_manager:Manager",
             "lifecycle_manager",
         )
+    },
+    "nav2_map_server": {
+        "nav2_map_server::MapServer": ("_map_server.map_server:MapServer", "map_server")
     },
     "robot_state_publisher": {
         "robot_state_publisher::RobotStatePublisher": (
