@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Final, Protocol
 
+from aionode import Node
 from aionode.errors import CommandError
 from aionode.interfaces.controller_manager_msgs.msg import HardwareComponentState, HardwareInterface
 from aionode.interfaces.lifecycle_msgs.msg import State
 from aionode.programs._ros2_control.description import Description, HardwareComponent, Interface
 from aionode.programs._ros2_control.mock_system import MockSystem
+from aionode.programs._ros2_control.topic_system import TopicSystem
 
 __all__ = ["Hardware"]
 
@@ -21,6 +23,10 @@ LABELS: Final = {
 }
 
 MOCKS: Final = ("mock_components/GenericSystem", "fake_components/GenericSystem")
+TOPICS: Final = (
+    "topic_based_ros2_control/TopicBasedSystem",
+    "joint_state_topic_hardware_interface/JointStateTopicSystem",
+)
 
 
 class Driver(Protocol):
@@ -32,12 +38,22 @@ class Driver(Protocol):
     def read(self, period_sec: float) -> None:
         """Update the states."""
 
+    def write(self) -> None:
+        """Carry out the commands."""
+
+    def rest(self) -> None:
+        """Stop what moves, as long as `write` is not called."""
+
+    async def run(self) -> None:
+        """Do what takes time, until it is cancelled or nothing is left to do."""
+
 
 class Hardware:
     """All hardware components of a robot.
 
     Args:
         description: The robot.
+        node: The node that publishes for components behind topics.
         limits: Whether commands are kept within the limits of the description.
 
     Attributes:
@@ -50,7 +66,7 @@ class Hardware:
         CommandError: A component needs a plugin in C++.
     """
 
-    def __init__(self, description: Description, *, limits: bool) -> None:
+    def __init__(self, description: Description, node: Node, *, limits: bool) -> None:
         self.description = description
         self.components = {each.name: each for each in description.components}
         self.lifecycle = dict.fromkeys(self.components, State.PRIMARY_STATE_UNCONFIGURED)
@@ -71,15 +87,24 @@ class Hardware:
             for name, one in self.command_interfaces.items()
             if limits and (one.least > -math.inf or one.greatest < math.inf)
         ]
+        self.known = {each.name: self.driver_of(each, node) for each in description.components}
         self.drivers: dict[str, Driver] = {}
+
+    def driver_of(self, component: HardwareComponent, node: Node) -> Driver:
+        """Return what drives a component."""
+        if component.plugin in TOPICS:
+            return TopicSystem(component, self.commands, self.states, node)
+        return MockSystem(component, self.commands, self.states)
 
     def set_state(self, name: str, state: int) -> None:
         """Take a component to a state, through those that lie between."""
         self.lifecycle[name] = state
         if state not in (State.PRIMARY_STATE_INACTIVE, State.PRIMARY_STATE_ACTIVE):
             self.drivers.pop(name, None)
-        elif name not in self.drivers:
-            self.drivers[name] = MockSystem(self.components[name], self.commands, self.states)
+        else:
+            self.drivers[name] = self.known[name]
+        if state != State.PRIMARY_STATE_ACTIVE:
+            self.known[name].rest()
 
     @staticmethod
     def state_called(label: str) -> int:
@@ -114,12 +139,15 @@ class Hardware:
         for driver in self.drivers.values():
             driver.read(period_sec)
 
-    def limit(self) -> None:
-        """Keep the commands within the limits of the description."""
+    def write(self) -> None:
+        """Carry out the commands, within the limits of the description."""
         for name, least, greatest in self.limited:
             command = self.commands[name]
             if not least <= command <= greatest and not math.isnan(command):
                 self.commands[name] = min(max(command, least), greatest)
+        for name, driver in self.drivers.items():
+            if self.lifecycle[name] == State.PRIMARY_STATE_ACTIVE:
+                driver.write()
 
     def report(self, name: str) -> HardwareComponentState:
         """Return a component, as the manager's services list it."""
@@ -174,10 +202,10 @@ def refuse_compiled(component: HardwareComponent) -> None:
     Raises:
         CommandError: It is written in C++.
     """
-    if component.plugin not in MOCKS:
+    if component.plugin not in (*MOCKS, *TOPICS):
         raise CommandError(
             f"hardware component '{component.name}': {component.plugin} is a plugin in C++; use "
             f"{MOCKS[0]} to try the robot without its hardware (often an argument such as "
-            "use_mock_hardware:=true), or run ros2_control_node in a ROS 2 with rmw_zenoh beside "
-            "aionode"
+            f"use_mock_hardware:=true), {TOPICS[0]} with a program of yours behind its topics, or "
+            "run ros2_control_node in a ROS 2 with rmw_zenoh beside aionode"
         )

@@ -103,7 +103,7 @@ class ControllerManager(Node):
             raise CommandError(f"robot_description cannot be used: {error}") from None
         default = self.context.ros_distro not in ("humble", "jazzy")
         limits = self.given("enforce_command_limits", default)
-        hardware = self.hardware = Hardware(description, limits=limits)
+        hardware = self.hardware = Hardware(description, self, limits=limits)
         wanted = {
             name: state
             for label, state in INITIAL_STATES.items()
@@ -121,6 +121,8 @@ class ControllerManager(Node):
         """Serve, and update the controllers, until the node ends."""
         self.starting.cancel()
         async with asyncio.TaskGroup() as tasks:
+            for driver in hardware.known.values():
+                tasks.create_task(driver.run())
             services = Services(self, hardware, Controllers(self, hardware, tasks))
             self.get_logger().info(
                 "Resource Manager has been successfully initialized. Starting Controller Manager "

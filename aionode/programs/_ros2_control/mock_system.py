@@ -70,6 +70,15 @@ class MockSystem:
         for part in self.joints:
             self.follow(part)
 
+    def write(self) -> None:
+        """`read` carries the commands out."""
+
+    def rest(self) -> None:
+        """Nothing moves."""
+
+    async def run(self) -> None:
+        """Nothing takes time."""
+
     def move(self, joint: str, period_sec: float) -> None:
         """Compute the position, velocity and acceleration of a joint."""
         mode = self.modes[joint]

@@ -128,7 +128,7 @@ class Services:
         if period_ns > 0:  # simulated time may be set back
             self.hardware.read(period_ns / 1e9)
             await self.controllers.update(now)
-            self.hardware.limit()
+            self.hardware.write()
 
     def tell(self) -> None:
         """Publish the states of controllers and hardware."""

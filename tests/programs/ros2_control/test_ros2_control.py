@@ -31,8 +31,8 @@ from tests.programs.ros2_control.conftest import LATCHED, MOVING, urdf
 
 
 def hardware_of(description: str) -> Hardware:
-    """Return active hardware."""
-    hardware = Hardware(Description.of(description), limits=True)
+    """Return active hardware; a mock needs no node."""
+    hardware = Hardware(Description.of(description), None, limits=True)  # type: ignore[arg-type]
     for name in hardware.components:
         hardware.set_state(name, State.PRIMARY_STATE_ACTIVE)
     return hardware
