@@ -30,13 +30,19 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "unspawner": "_ros2_control.unspawner",
         "unspawner.py": "_ros2_control.unspawner",
     },
-    **{
-        package: {"listener": "_demo_nodes.listener", "talker": "_demo_nodes.talker"}
-        for package in ("demo_nodes_cpp", "demo_nodes_py")
+    "demo_nodes_cpp": {"listener": "_demo_nodes.listener", "talker": "_demo_nodes.talker"},
+    "demo_nodes_py": {
+        "listener": "_demo_nodes.listener",
+        "talker": "_demo_nodes.talker_of_rclpy",
     },
     "diagnostic_aggregator": {
         "add_analyzer": "_diagnostics.add_analyzer",
         "aggregator_node": "_diagnostics.aggregator_node",
+    },
+    "dummy_map_server": {"dummy_map_server": "_demo_nodes.dummy_map_server"},
+    "dummy_sensors": {
+        "dummy_joint_states": "_demo_nodes.dummy_joint_states",
+        "dummy_laser": "_demo_nodes.dummy_laser",
     },
     "foxglove_bridge": {"foxglove_bridge": "_bridges.foxglove_bridge"},
     "image_transport": {"republish": "_camera.republish"},
@@ -78,6 +84,10 @@ A package without executables has data only.
 """
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
+    "composition": {
+        "composition::Listener": ("_demo_nodes.listener:Listener", "listener"),
+        "composition::Talker": ("_demo_nodes.talker:Talker", "talker"),
+    },
     "demo_nodes_cpp": {
         "demo_nodes_cpp::Listener": ("_demo_nodes.listener:Listener", "listener"),
         "demo_nodes_cpp::Talker": ("_demo_nodes.talker:Talker", "talker"),

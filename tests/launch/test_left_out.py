@@ -99,7 +99,9 @@ import rs_launch
 
 def generate_launch_description():
     driver = [ExecuteProcess(cmd=["driver"])]
-    return LaunchDescription(rs_launch.declared() + driver + rs_launch.others())
+    return LaunchDescription(
+        rs_launch.declared() + rs_launch.more() + driver + rs_launch.others()
+    )
 """
     assert [each["argv"] for each in records(files, text) if "argv" in each] == [["driver"]]
 

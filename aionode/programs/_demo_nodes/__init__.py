@@ -1,1 +1,1 @@
-"""The talker and listener with which most tutorials of ROS 2 begin."""
+"""ROS 2's demos: the talker and listener of most tutorials, and the sensors of a dummy robot."""

@@ -1,4 +1,4 @@
-"""``listener`` of demo_nodes_cpp and demo_nodes_py: logs what comes on `chatter`."""
+"""``demo_nodes_cpp listener``, and that of demo_nodes_py: logs what comes on `chatter`."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class StandIn(LaunchDescriptionEntity):
     __str__ = __fspath__ = __repr__
 
     def __add__(self, other: Any) -> Any:
-        return other if isinstance(other, list) else f"{self}{other}"
+        return other if isinstance(other, list | StandIn) else f"{self}{other}"
 
     def __radd__(self, other: Any) -> Any:
         return other if isinstance(other, list) else f"{other}{self}"
