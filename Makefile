@@ -16,6 +16,7 @@ PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.1
 	$$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$name && break; \
 	done)
 BIN := .venv/bin
+PIP ?= $(BIN)/python -m pip --disable-pip-version-check
 WORKERS ?= auto
 LAB := $(shell sed -n 's/^\[\(.*\)\]$$/\1/p' tests/lab.toml)
 
@@ -83,12 +84,12 @@ clean:
 # Two steps, so that trying aionode out does not wait for the development tools.
 .venv/installed: pyproject.toml | .venv/bin/python
 	@echo "Installing aionode into .venv ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
+	@$(PIP) install --quiet --editable '.[fast]'
 	@touch $@
 
 .venv/installed-dev: pyproject.toml | .venv/bin/python
 	@echo "Installing aionode and its development tools into .venv ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@$(PIP) install --quiet --editable '.[dev]'
 	@touch .venv/installed $@
 
 .venv/bin/python:

@@ -90,6 +90,7 @@ def test_quoted_code_is_the_code_that_is_run() -> None:
         assert len(marks) == len(QUOTE.findall(text)), f"{page}: a quote without a block"
 
 
+@pytest.mark.timeout(180)  # it parses the whole package
 def test_the_reference_lists_what_sphinx_shows() -> None:
     """In a checkout and on a code host its pages would be empty; `make quotes` makes the lists."""
     for page in sorted((ROOT / "docs" / "reference").glob("*.md")):

@@ -54,6 +54,7 @@ async def test_a_node_from_the_factory_may_be_entered_by_the_test(
     assert node.destroyed
 
 
+@pytest.mark.processes
 def test_a_failing_callback_fails_the_test_at_its_end(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -109,6 +110,7 @@ def without(
     return pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider", *options)
 
 
+@pytest.mark.processes
 def test_pytest_starts_where_no_plugin_for_async_tests_is(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -118,6 +120,7 @@ def test_pytest_starts_where_no_plugin_for_async_tests_is(
     result.assert_outcomes(passed=1)
 
 
+@pytest.mark.processes
 def test_an_async_fixture_says_what_it_needs(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -128,6 +131,7 @@ def test_an_async_fixture_says_what_it_needs(
     result.stdout.fnmatch_lines(["*pip install pytest-asyncio*"])
 
 
+@pytest.mark.processes
 def test_the_fixtures_work_with_anyio_alone(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -142,6 +146,7 @@ def test_the_fixtures_work_with_anyio_alone(
     result.assert_outcomes(passed=2)
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("mode", "mark"),
     [("strict", "@pytest.mark.asyncio"), ("auto", ""), ("strict", "@pytest.mark.anyio")],
@@ -176,6 +181,7 @@ async def test_it(replay_bag, golden_bag):
 """
 
 
+@pytest.mark.processes
 def test_outputs_are_compared_with_a_golden_bag_beside_the_test(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,6 +69,7 @@ aionode.run(Speaker, args=[])
 """
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("line", "texts"),
     [

@@ -425,6 +425,7 @@ def limit_files() -> None:
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("disk", ["a limit", "a disk"])
 def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(
     disk: str, tmp_path: Path

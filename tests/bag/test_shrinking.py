@@ -76,6 +76,8 @@ async def test_a_replay_reads_the_piece_in_the_environment(
     assert seen == [30.0, 31.0, 32.0]
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
 async def test_the_status_of_a_command_says_whether_it_fails(path: Path) -> None:
     """A pytest run that collects no test is not a failed test."""
     piece = Piece(path=str(path), start_ns=0, end_ns=1, topics=[])

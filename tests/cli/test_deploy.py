@@ -171,6 +171,8 @@ async def deploy(workspace: Path, *options: str, python: str) -> tuple[int, str]
     return process.returncode, output.decode()
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
 @pytest.mark.timeout(180)  # a virtual environment and a wheel are made
 async def test_a_workspace_is_installed_and_its_unit_started(host: Host, workspace: Path) -> None:
     """A second run changes nothing, and a change creates a release beside the first."""

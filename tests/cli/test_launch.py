@@ -106,6 +106,7 @@ def test_it_finds_a_file_of_a_package(
     assert "available: a.launch.xml" in capsys.readouterr().err
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(("options", "status"), [([], 3), (["--noninteractive"], 0)])
 def test_its_exit_status_is_that_of_the_first_failure(
     tmp_path: Path, options: list[str], status: int
@@ -163,6 +164,7 @@ def test_a_launch_file_runs_the_command_of_ros_by_its_name(
     assert rest[2].rstrip().endswith("_share/turtlesim")
 
 
+@pytest.mark.processes
 def test_a_launch_file_in_python_runs_xacro_by_its_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -192,6 +194,7 @@ def test_a_launch_file_in_python_runs_xacro_by_its_name(
     assert os.environ["PATH"] == "/usr/bin:/bin"
 
 
+@pytest.mark.processes
 def test_xacro_names_a_file_that_is_not_there(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

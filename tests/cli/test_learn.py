@@ -20,6 +20,7 @@ from tests.support.peers import isolated_environment
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 
 
+@pytest.mark.processes
 def test_export_says_what_became_of_the_messages(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

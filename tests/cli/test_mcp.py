@@ -130,6 +130,8 @@ def test_a_wrong_option_says_what_fits(
     assert shown.out == ""
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
 async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
     """A desktop program passes no environment variables on."""
     words = ["-m", "aionode", "mcp", "--domain", "7"]
@@ -143,6 +145,9 @@ async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
     assert not answered.is_error
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
+@pytest.mark.timeout(180)
 async def test_it_ends_with_its_client_while_a_call_is_under_way() -> None:
     """The kernel closes the streams of a killed client; nothing else notifies the command."""
     command = await asyncio.create_subprocess_exec(
@@ -161,12 +166,15 @@ async def test_it_ends_with_its_client_while_a_call_is_under_way() -> None:
         {"id": 2, "method": "tools/call", "params": watch},
         {"id": 3, "method": "ping"},
     ]
-    for request in requests:
-        command.stdin.write(json.dumps({"jsonrpc": "2.0", **request}).encode() + b"\n")
-    async with asyncio.timeout(60):
+    try:
+        for request in requests:
+            command.stdin.write(json.dumps({"jsonrpc": "2.0", **request}).encode() + b"\n")
         answers = [json.loads(await command.stdout.readline())["id"] for _ in range(2)]
         command.stdin.close()
         status = await command.wait()
+    finally:
+        if command.returncode is None:  # uvloop would wait for it when the loop is closed
+            command.kill()
 
     assert answers == [1, 3]
     assert status == 0

@@ -287,6 +287,7 @@ def ended(program: subprocess.Popen[str]) -> int:
     return program.returncode
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(60)
 def test_the_rover_has_a_page() -> None:
     """One command, and a browser; Ctrl-C ends all of it."""
@@ -299,6 +300,7 @@ def test_the_rover_has_a_page() -> None:
     assert "<html" in page.text
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(60)
 def test_without_the_extra_the_rover_says_what_its_page_needs() -> None:
     """It runs all the same: everything but the page is there."""

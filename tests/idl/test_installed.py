@@ -122,6 +122,7 @@ print(*Range.__struct_fields__)
 """
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("variable", "last"),
     [("ROS_DISTRO", "range"), ("AMENT_PREFIX_PATH", "volume"), ("", "variance")],

@@ -98,6 +98,7 @@ print(list(Theirs.get_fields_and_field_types()))
 """
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("named", [False, True])
 def test_the_release_that_a_robot_has_comes_before_the_shipped_one(
     workspace: Path, tmp_path: Path, named: bool

@@ -476,6 +476,7 @@ def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files
     assert list(plan.records()) == records
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("command", ["'xacro '", "FindExecutable(name='xacro'), ' '"])
 def test_a_command_in_python_finds_the_packages_of_the_workspace(
     command: str, files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -715,6 +716,7 @@ def test_reading_a_launch_file_leaves_no_file_beside_it(files: Files) -> None:
     assert [file.name for file in files.folder.iterdir()] == ["a.launch.py"]
 
 
+@pytest.mark.processes
 def test_names_of_launch_are_found_by_programs(tmp_path: Path) -> None:
     """An rclpy program, such as a helper of launch files, may import them as well."""
     program = tmp_path / "program.py"

@@ -331,6 +331,7 @@ def test_a_name_that_aionode_does_not_have_stays_an_error(files: Files) -> None:
         records(files, text)
 
 
+@pytest.mark.processes
 def test_a_command_that_looks_for_a_package_that_is_not_there_is_left_out(files: Files) -> None:
     """Such as xacro, for a description that includes another package's."""
     pytest.importorskip("xacro")

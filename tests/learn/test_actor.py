@@ -412,6 +412,8 @@ def half(seen: dict[str, np.ndarray]) -> np.ndarray:
     return np.full((4, 1), 0.5 + (multiprocessing.parent_process() is not None))
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
 async def test_a_function_may_run_in_another_process(robot: Robot) -> None:
     """Where it may hold the GIL."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as executor:

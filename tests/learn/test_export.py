@@ -398,6 +398,7 @@ def test_the_tasks_are_an_index_of_any_name(tmp_path: Path, index: str | None, f
     ])  # fmt: skip
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("place", ["10", "45", "70", "write_dataset", "check_dataset"])
 def test_a_killed_export_resumes(tmp_path: Path, place: str) -> None:
     """Wherever it was, also with another codec and other bags than before: they leave nothing."""
@@ -417,6 +418,7 @@ def test_a_killed_export_resumes(tmp_path: Path, place: str) -> None:
     assert Reader(out).info["features"][CAMERA]["info"]["video.codec"] == "h264"
 
 
+@pytest.mark.processes
 def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
     """With progress that ends at the whole."""
     bags = [

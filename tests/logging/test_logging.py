@@ -548,6 +548,7 @@ def test_an_application_that_configures_logging_keeps_its_own_format() -> None:
     assert err == "mine: m\n"
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("before", [True, False])
 def test_a_line_comes_once_after_basic_config(before: bool) -> None:
     """The application's handler writes it, in its own format, whichever was installed first."""
@@ -559,6 +560,7 @@ def test_a_line_comes_once_after_basic_config(before: bool) -> None:
     assert [line for line in err.splitlines() if "first" not in line] == ["mine: m"]
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     "handler", ["logging.FileHandler('/dev/null')", "logging.NullHandler()", "high"]
 )

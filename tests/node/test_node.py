@@ -454,6 +454,7 @@ async def test_cancelled_waits_leave_nothing_in_the_graph(node: Node) -> None:
     assert living(asyncio.Future) < futures + 10
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("module", "loaded"), [("std_msgs.msg.String", False), ("sensor_msgs.msg.JointState", True)]
 )

@@ -159,6 +159,8 @@ async def test_contexts_answer_each_other_over_the_network() -> None:
     assert (found.silent, found.older, found.unreadable) == ({}, {}, {})
 
 
+@pytest.mark.processes
+@pytest.mark.one_loop
 @pytest.mark.parametrize("link", ["on", "off"])
 async def test_a_stopped_process_is_named_and_delays_nobody(
     monkeypatch: pytest.MonkeyPatch, link: str

@@ -50,6 +50,7 @@ def wait_until_stopped(pid: int) -> None:
     assert os.waitid(os.P_PID, pid, os.WSTOPPED) is not None
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("step", ["await asyncio.sleep(1)", "time.sleep(1)", "pass"])
 def test_the_stop_is_sent_before_a_program_with_a_lease_is_suspended(step: str) -> None:
     """Nobody commands the robot meanwhile. The next Ctrl-Z does the same."""

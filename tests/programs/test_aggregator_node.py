@@ -331,6 +331,7 @@ analyzers:
 """
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop
 def test_it_is_started_with_a_file_of_parameters(tmp_path: Path) -> None:

@@ -127,6 +127,7 @@ def test_their_launch_files_are_found(tmp_path: Path) -> None:
     assert all("1234" in str(argv) for argv in started)
 
 
+@pytest.mark.processes
 def test_a_description_is_displayed_as_by_urdf_launch(tmp_path: Path) -> None:
     """Without its window, as on a computer without a screen."""
     package = tmp_path / "src" / "arm"

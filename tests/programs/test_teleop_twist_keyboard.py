@@ -226,6 +226,7 @@ def end(keys: Any, how: str) -> None:
         os.kill(keys.pid, signal.SIGKILL if how == "sigkill" else signal.SIGSTOP)
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("how", "told"),
     [
@@ -264,6 +265,7 @@ def test_the_wheels_stop_within_half_a_second(terminals: Terminals, how: str) ->
     assert passed < 0.5
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("key", [pytest.param(key, marks=IN_TERMINALS) for key in "\x1a\x1c\x13"])
 def test_keys_that_freeze_or_end_programs_stop_the_robot_like_any_other(
     terminals: Terminals, key: str
@@ -286,6 +288,7 @@ async def test_the_help_is_shown_again_after_fifteen_changes(start: Start) -> No
     assert ["Keys move the robot" in text for text in shown] == [False] * 14 + [True]
 
 
+@pytest.mark.processes
 def test_without_a_terminal_it_says_where_to_start_it() -> None:
     """A launch file has none for it."""
     from tests.support.fork_server import run

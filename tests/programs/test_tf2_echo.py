@@ -79,6 +79,7 @@ async def test_it_waits_for_the_first_transform_and_then_prints_at_its_rate(
     assert "- Translation: [1.000, 2.000, 3.000]" in texts[-1]
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize(
     ("words", "status", "text"),
     [

@@ -384,6 +384,7 @@ def environment() -> Iterator[dict[str, str]]:
     assert process.returncode in (0, 130)
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop
 def test_the_commands_of_the_tutorials_work_word_for_word(environment: dict[str, str]) -> None:
@@ -413,6 +414,7 @@ def test_the_commands_of_the_tutorials_work_word_for_word(environment: dict[str,
     assert "SUCCEEDED" in said
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop
 def test_arrow_keys_of_a_terminal_move_the_turtle(environment: dict[str, str]) -> None:

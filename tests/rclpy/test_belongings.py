@@ -44,6 +44,7 @@ def found() -> dict[str, str]:
     return ends
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("end", ENDS)
 def test_whatever_the_program_has_is_as_before(end: str, found: dict[str, str]) -> None:
     """The library closes, resets and replaces nothing that is not its own."""

@@ -207,6 +207,7 @@ def test_validators_say_what_is_wrong() -> None:
     assert checks.unique(Parameter("a", value=[1, 2])) == ""
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("build", ["cmake", "python"])
 def test_a_program_imports_the_module_of_its_workspace(tmp_path: Path, build: str) -> None:
     """Found by the rule that would generate it, with validators of the package."""

@@ -134,6 +134,7 @@ finally:
 """
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(60)
 @pytest.mark.one_loop
 def test_tasks_are_given_awaited_and_canceled(tmp_path: Path) -> None:

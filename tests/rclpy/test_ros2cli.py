@@ -250,6 +250,7 @@ def test_what_is_waited_for_has_a_limit() -> None:
     assert not wait_for(lambda: False, 0.0, period=0.001)
 
 
+@pytest.mark.processes
 def test_executables_of_a_package_that_is_not_built_can_be_run(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

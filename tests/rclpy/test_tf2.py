@@ -99,6 +99,7 @@ def stamped(parent: str, child: str, seconds: float = 1.0) -> Any:
     return msg
 
 
+@pytest.mark.processes
 def test_a_program_of_tf2_runs_unchanged(tmp_path: Path) -> None:
     """Listener, broadcasters, a wait that blocks its thread, a conversion and a future."""
     program = tmp_path / "program.py"

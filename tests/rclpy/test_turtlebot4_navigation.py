@@ -105,6 +105,7 @@ finally:
 """
 
 
+@pytest.mark.processes
 @pytest.mark.timeout(60)
 @pytest.mark.one_loop
 def test_a_robot_docks_undocks_and_drives(tmp_path: Path) -> None:

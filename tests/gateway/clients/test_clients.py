@@ -94,6 +94,7 @@ def test_ros_mcp(roslibpy: str, port: str) -> None:
     subprocess.run([roslibpy, HERE / "ros_mcp_checks.py", port], check=True, timeout=170)
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("subprotocol", ["foxglove.websocket.v1", "foxglove.sdk.v1"])
 def test_ws_protocol_of_npm(port: str, subprotocol: str) -> None:
     """Foxglove, Lichtblick and programs of Node use this library."""

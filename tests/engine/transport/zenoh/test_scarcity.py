@@ -29,6 +29,7 @@ asyncio.run(main())
 """
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("count", [8, 14, 17, 23, 29])
 def test_few_descriptors_are_an_error_that_names_the_limit(count: int) -> None:
     """Zenoh panics with some of these numbers, and aborts the process with others."""
