@@ -215,8 +215,8 @@ def is_machinery(filename: str) -> bool:
 
 OWN_PACKAGES = frozenset(
     {
-        *("ament_index_python", "launch", "launch_param_builder", "launch_ros", "launch_xml"),
-        *("launch_yaml", "moveit_configs_utils", "nav2_common"),
+        *("ament_index_python", "controller_manager", "launch", "launch_param_builder"),
+        *("launch_ros", "launch_xml", "launch_yaml", "moveit_configs_utils", "nav2_common"),
     }
 )
 """The packages of ROS that aionode has for launch files."""

@@ -22,6 +22,7 @@ FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
 SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
 """Their names."""
 YIELDING: Final = (
+    "controller_manager",
     "generate_parameter_library_py",
     "interactive_markers",
     "launch_param_builder",

@@ -205,3 +205,43 @@ class Shout(Substitution):
     )
 
     assert record["log"] == "HELLO"
+
+
+MANAGER = "--controller-manager controller_manager"
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (
+            "load_controller_launch_description('arm', '/arm.yaml')",
+            f"arm {MANAGER} --param-file /arm.yaml",
+        ),
+        (
+            "controllers_spawner_launch_description_from_dict({'arm': ['/a', '/b']}, ['-u'])",
+            f"arm {MANAGER} --param-file /a --param-file /b -u",
+        ),
+        (
+            "load_controller_launch_description('arm', controller_type='t/T')",
+            f"arm {MANAGER} --controller-type t/T",
+        ),
+        (
+            "spawner_launch_description({'a': {'inactive': True}, 'b': {'param_file': '/b'}})",
+            "--controller a --inactive --controller b --param-file /b",
+        ),
+        (
+            "spawner_launch_description({'a': {'load_only': True, 'ros_args': '-r b:=c'}})",
+            "--controller a --load-only --controller-ros-args -r b:=c",
+        ),
+    ],
+)
+def test_controllers_are_spawned_by_the_functions_of_their_package(
+    files: Files, call: str, words: str
+) -> None:
+    """With the arguments of the spawner."""
+    records = files.python(
+        f"*generate_{call}.entities", imports="from controller_manager.launch_utils import *"
+    )
+    (started,) = [each for each in records if "argv" in each]
+
+    assert words in " ".join(filter(None, started["argv"]))

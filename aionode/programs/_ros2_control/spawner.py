@@ -73,6 +73,7 @@ def parsed(words: list[str]) -> tuple[argparse.Namespace, list[Job]]:
     Raises:
         CommandError: A file of parameters does not exist.
     """
+    words = [word for word in words if word]  # launch files have empty ones for what is not wanted
     if "--controller" in words and not {"-h", "--help"} & set(words):
         common, _ = common_options().parse_known_args(words)
         starts = [index for index, word in enumerate(words) if word == "--controller"]

@@ -548,3 +548,8 @@ def test_mocks_start_where_they_stand() -> None:
 
     assert isinstance(hardware.drivers[component.name], MockSystem)
     assert hardware.states["left/position"] == 0.0
+
+
+def test_empty_arguments_are_ignored() -> None:
+    """Launch files have them for what is not wanted."""
+    assert [job.name for job in parsed(["wrist", "", "--inactive"])[1]] == ["wrist"]
