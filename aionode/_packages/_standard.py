@@ -47,6 +47,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "foxglove_bridge": {"foxglove_bridge": "_bridges.foxglove_bridge"},
     "image_transport": {"republish": "_camera.republish"},
     "joy": {"joy_node": "_joy.joy_node"},
+    "joy_linux": {"joy_linux_node": "_joy.joy_linux_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},

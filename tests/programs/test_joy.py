@@ -15,6 +15,7 @@ import pytest
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.sensor_msgs.msg import Joy, JoyFeedback
+from aionode.programs._joy.joy_linux_node import JoyLinuxNode
 from aionode.programs._joy.joy_node import JoyNode
 from aionode.programs._joy.joystick import Joystick, input_devices
 from aionode.programs._joy.teleop_node import TeleopTwistJoy
@@ -230,6 +231,33 @@ async def test_a_joystick_is_chosen_by_its_name_or_its_number(desk: Desk) -> Non
     desk.plugged = [Pad("One"), Pad("Two")]
     await desk.begin(device_name="One")
     assert [pad.is_closed for pad in desk.plugged] == [False, True]
+
+
+@pytest.mark.parametrize("parameters", [{"dev": "/dev/input/js1"}, {"dev_name": "Two"}])
+async def test_a_joystick_of_joy_linux_is_chosen_by_its_device_or_its_name(
+    start: Start, manual_clock: ManualClock, parameters: dict[str, Any]
+) -> None:
+    """These are the parameters of that package."""
+    del manual_clock  # the context follows it
+    plugged = [Pad("One"), Pad("Two")]
+    start(JoyLinuxNode, lambda: plugged, **parameters)
+
+    assert [pad.is_closed for pad in plugged] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("dev", "/dev/ttyUSB", "use a joystick such as /dev/input/js0"),
+        ("coalesce_interval", -1.0, "coalesce_interval must be 0 or more, in seconds"),
+    ],
+)
+async def test_parameters_of_joy_linux_that_do_not_fit_are_refused(
+    start: Start, name: str, value: Any, text: str
+) -> None:
+    """With what fits."""
+    with pytest.raises(CommandError, match=text):
+        start(JoyLinuxNode, list, **{name: value})
 
 
 async def test_a_name_that_no_joystick_has_is_said(

@@ -37,8 +37,7 @@ class JoyNode(Node):
 
     def __init__(self, devices: Callable[[], Iterable[Device]] = input_devices) -> None:
         super().__init__("joy_node")
-        self.number = self.declare_parameter("device_id", 0).value
-        self.name = self.declare_parameter("device_name", "").value
+        self.number, self.name, coalesce_sec = self.chosen()
         self.deadzone = self.declare_parameter("deadzone", 0.05).value
         if not 0.0 <= self.deadzone < 1.0:
             raise CommandError("Deadzone must be between 0.0 and 1.0")
@@ -48,19 +47,29 @@ class JoyNode(Node):
         if rate > FASTEST_HZ:
             raise CommandError("Autorepeat rate must be <= 1000.0")
         self.is_sticky = self.declare_parameter("sticky_buttons", False).value
-        coalesce_ms = self.declare_parameter("coalesce_interval_ms", 1).value
-        if coalesce_ms < 0:
-            raise CommandError("coalesce_interval_ms must be positive")
         self.devices = devices
         self.loop = asyncio.get_running_loop()
         self.has_warned = self.has_failed = False
         self.publisher = self.create_publisher(Joy, "joy", 10)
         self.create_subscription(JoyFeedback, "joy/set_feedback", self.on_feedback, 10)
-        self.soon = create_wall_timer(self, coalesce_ms / 1e3, self.publish_once, autostart=False)
+        self.soon = create_wall_timer(self, coalesce_sec, self.publish_once, autostart=False)
         if rate:
             create_wall_timer(self, 1.0 / rate, self.publish)
         create_wall_timer(self, SEARCH_SEC, self.search)
         self.search()
+
+    def chosen(self) -> tuple[int, str, float]:
+        """Return the number of the joystick, its name, and how long changes are collected.
+
+        Raises:
+            CommandError: A parameter is invalid.
+        """
+        number = self.declare_parameter("device_id", 0).value
+        name = self.declare_parameter("device_name", "").value
+        coalesce_ms = self.declare_parameter("coalesce_interval_ms", 1).value
+        if coalesce_ms < 0:
+            raise CommandError("coalesce_interval_ms must be positive")
+        return number, name, coalesce_ms / 1e3
 
     def search(self) -> None:
         """Search for the joystick, unless one is open."""
