@@ -257,7 +257,8 @@ async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) 
 async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
     """Neither end is notified: the gateway sends the stop after the time to live.
 
-    Commands that the page has sent meanwhile are refused when the network is back.
+    Commands that the page has sent meanwhile are refused when the network is back. It sends none
+    afterwards here: until it hears of the refusal, it may, and these are carried out.
     """
     async with scene(context, driving(ttl_sec=0.3), is_cuttable=True) as whole:
         page, robot, gateway, commands, network = whole
@@ -267,6 +268,7 @@ async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
         count = len(commands)
         await page.value("new Promise(done => setTimeout(done, 200))")
+        await page.value("WebSocket.prototype.send = () => {}; 1")
         network.set()
         await page.until("!document.querySelector('.pad').classList.contains('held')")
 
