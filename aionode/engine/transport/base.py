@@ -13,6 +13,7 @@ loop runs; other processes can reach them once `Transport.open` has returned.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 
 import msgspec
@@ -22,7 +23,6 @@ from aionode.engine.transport.drops import Drops
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
-    from collections.abc import Set as AbstractSet
 
     from aionode.errors import DecodeError, ServiceError
     from aionode.graph import EndpointInfo, Graph, NodeInfo
