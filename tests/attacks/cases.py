@@ -83,7 +83,7 @@ def all_attacks() -> list[Attack]:
         Attack("HEARTBEAT up to 2^62", "member", "heartbeat", pair()),
         Attack("GAP up to 2^62", "member", "gap", pair()),
         Attack("ACKNACK of any numbers", "member", "send_absurd_submessages", pair()),
-        Attack("messages that are none", "member", "send_damaged", pair(), short=True),
+        Attack("malformed messages", "member", "send_damaged", pair(), short=True),
         Attack(
             "a parameter of 100 kB, asked for 40 000 times at once",
             "member",
@@ -96,9 +96,7 @@ def all_attacks() -> list[Attack]:
             "ask_everything",
             pair(parameter_size=100),
         ),
-        Attack(
-            "requests that are none", "member", "send_damaged_requests", pair(parameter_size=10)
-        ),
+        Attack("malformed requests", "member", "send_damaged_requests", pair(parameter_size=10)),
         Attack(
             "20 requests of 1 MB a second, whose answers it does not read (queues of 4 MiB)",
             "member",

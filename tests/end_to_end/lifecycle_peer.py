@@ -77,7 +77,7 @@ LABELS = [
     "transition_callback_success",
     "konfigurieren für später",
 ]
-"""All labels of transitions, and some that are none."""
+"""All labels of transitions, and some that do not exist."""
 
 
 def say(text: str) -> None:

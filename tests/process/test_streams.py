@@ -1,4 +1,4 @@
-"""Standard streams that nobody reads, and descriptors that are none."""
+"""Standard streams that nobody reads, and invalid descriptors."""
 
 from __future__ import annotations
 
