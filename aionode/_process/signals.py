@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode._process.streams import UnreadWatch, interrupt_main
 from aionode._process.sudden_end import LastMessages, print_error, start_thread
+from aionode._process.temporary import remove_temporary_folders
 from aionode.clock import perf_ns
 
 if TYPE_CHECKING:
@@ -195,4 +196,5 @@ class SuddenEnd:
             name = self._number.name
             text = f"aionode: ended at once by a second signal ({name})\n"
             print_error(self._messages.failure + text)
+            remove_temporary_folders()
             os._exit(128 + self._number)

@@ -188,7 +188,7 @@ def test_arguments_of_xacro_may_be_known_at_launch_only(arm: Files) -> None:
 
 
 def test_the_launch_files_of_the_setup_assistant_start_what_aionode_has(arm: Files) -> None:
-    """Transforms of virtual joints, and robot_state_publisher."""
+    """Transforms of virtual joints, robot_state_publisher, and spawners of controllers."""
     config = "MoveItConfigsBuilder('arm').to_moveit_configs()"
 
     (transform,) = planned(arm, f"generate_static_virtual_joint_tfs_launch({config})")
@@ -196,13 +196,14 @@ def test_the_launch_files_of_the_setup_assistant_start_what_aionode_has(arm: Fil
 
     assert "--frame-id world --child-frame-id base" in " ".join(transform["argv"])
     assert "robot_state_publisher" in publisher["argv"]
+    for spawner in planned(arm, f"generate_spawn_controllers_launch({config})"):
+        assert "spawner" in spawner["argv"]
 
 
 @pytest.mark.parametrize(
     ("launch", "package"),
     [
         ("generate_move_group_launch", "moveit_ros_move_group"),
-        ("generate_spawn_controllers_launch", "controller_manager"),
         ("generate_moveit_rviz_launch", "rviz2"),
         ("generate_setup_assistant_launch", "moveit_setup_assistant"),
         ("generate_warehouse_db_launch", "warehouse_ros_mongo"),

@@ -27,7 +27,8 @@ class Controller(LifecycleNode):
     """
 
     def __init__(self, name: str, hardware: Hardware, **options: Any) -> None:
-        super().__init__(name, **options)
+        # The manager alone changes its state: it also has to release the interfaces.
+        super().__init__(name, enable_communication_interface=False, **options)
         self.hardware = hardware
         self.command_names: list[str] = []
         self.state_names: list[str] = []

@@ -163,6 +163,7 @@ class Controllers:
             self.logger.error(f"Could not unload controller with name '{name}' because {why}")
             return False
         controller = self.loaded.pop(name)
+        self.hardware.release(name)
         controller.destroy_node()
         await controller.ended()
         return True
@@ -307,7 +308,7 @@ class Controllers:
 
     async def deactivate_users(self, component: str) -> None:
         """Deactivate the controllers that use a hardware component."""
-        for name, controller in self.loaded.items():
+        for name, controller in list(self.loaded.items()):
             used = (*controller.command_names, *controller.state_names)
             if self.state(name) == "active" and any(
                 self.hardware.owners.get(each) == component for each in used

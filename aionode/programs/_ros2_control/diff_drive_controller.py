@@ -210,7 +210,8 @@ class DiffDriveController(Controller):
             return
         command = (msg.twist.linear.x, msg.twist.angular.z)
         if all(map(math.isfinite, command)):
-            self.command, self.heard_ns = command, sent
+            # A clock that is ahead must not put the timeout off.
+            self.command, self.heard_ns = command, min(sent, now)
         else:
             self.get_logger().warning(
                 "Command message contains NaNs. Not updating reference interfaces.",
@@ -228,6 +229,7 @@ class DiffDriveController(Controller):
     def update(self, now: Time, period_sec: float) -> None:
         """Turn the wheels as commanded, and publish where the base is."""
         timeout = self.given["cmd_vel_timeout"]
+        self.heard_ns = min(self.heard_ns, now.nanoseconds)  # simulated time may be set back
         if self.command and timeout and now.nanoseconds - self.heard_ns > timeout * 1e9:
             if any(self.command):
                 self.get_logger().warning("Velocity command timed out. Braking.")

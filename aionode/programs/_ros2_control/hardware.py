@@ -131,7 +131,10 @@ class Hardware:
             driver.claim(names)
 
     def release(self, controller: str) -> None:
-        """Take the command interfaces of a controller back."""
+        """Take the command interfaces of a controller back; what it moved stops."""
+        for name, owner in self.claims.items():
+            if owner == controller and name.endswith(("/velocity", "/effort")):
+                self.commands[name] = 0.0
         self.claims = {name: owner for name, owner in self.claims.items() if owner != controller}
 
     def read(self, period_sec: float) -> None:

@@ -45,6 +45,8 @@ class Odometry:
         """Move as the wheels turned to these positions; return whether it did."""
         if period_sec < LEAST_SEC:
             return False
+        if not (math.isfinite(left) and math.isfinite(right)):  # not measured yet
+            return False
         before_left, before_right = self.positions
         self.positions = (left, right)
         return self.turn_at(
@@ -53,7 +55,7 @@ class Odometry:
 
     def turn_at(self, left: float, right: float, period_sec: float) -> bool:
         """Move as the wheels turn at these speeds; return whether it did."""
-        if period_sec < LEAST_SEC:
+        if period_sec < LEAST_SEC or not (math.isfinite(left) and math.isfinite(right)):
             return False
         left, right = left * self.radii[0], right * self.radii[1]
         linear, angular = (left + right) / 2, (right - left) / self.separation

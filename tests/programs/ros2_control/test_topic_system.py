@@ -10,6 +10,7 @@ import pytest
 
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from aionode.interfaces.lifecycle_msgs.msg import State
+from aionode.interfaces.nav_msgs.msg import Odometry
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.programs._ros2_control.topic_system import TTL_SEC
@@ -132,3 +133,66 @@ async def test_controllers_that_are_not_updated_any_more_stop_the_wheels(
     await bot.pass_time(TTL_SEC + 0.1)
 
     assert speeds(out)[-2:] == [pytest.approx(5.0), 0.0]
+
+
+async def test_nobody_but_the_manager_changes_the_state_of_a_controller(
+    robot: Callable[..., Any],
+) -> None:
+    """The wheels would go on: the manager renews the lease, and only it takes interfaces back."""
+    bot = await robot(ARM)
+    await bot.start("base")
+
+    assert not [
+        name for name, _ in bot.user.get_service_names_and_types() if "/base/change" in name
+    ]
+
+
+async def test_what_a_controller_moved_stops_when_its_interfaces_are_taken_back(
+    robot: Callable[..., Any],
+) -> None:
+    """Whatever the controller did at its end."""
+    bot = await robot(ARM)
+    await bot.start("base")
+    await drive(bot, 0.5)
+    await bot.pass_time(0.05)
+    assert bot.commands["left/velocity"] > 0
+
+    bot.manager.hardware.release("base")
+
+    assert bot.commands["left/velocity"] == 0.0
+
+
+async def test_a_command_from_the_future_does_not_put_the_timeout_off(
+    robot: Callable[..., Any],
+) -> None:
+    """The clock of a teleoperation machine may be ahead."""
+    bot = await robot(ARM)
+    await bot.start("base")
+    publisher = bot.user.create_publisher(TwistStamped, "base/cmd_vel", 10)
+    command = TwistStamped(twist=Twist(linear=Vector3(x=0.5)))
+    now = bot.manager.get_clock().now().nanoseconds + 60 * 10**9
+    command.header.stamp.sec, command.header.stamp.nanosec = divmod(now, 10**9)
+    publisher.publish(command)
+    await settle()
+    await bot.pass_time(0.05)
+    assert bot.commands["left/velocity"] > 0
+
+    for _ in range(10):
+        await bot.pass_time(0.1)
+
+    assert bot.commands["left/velocity"] == 0.0
+
+
+async def test_wheels_that_are_not_measured_yet_spoil_no_odometry(
+    robot: Callable[..., Any],
+) -> None:
+    """The driver may come after the spawner."""
+    bot = await robot(ARM)
+    odometry = bot.hear(Odometry, "base/odom")
+    await bot.start("base")
+    await bot.pass_time(0.1)
+    await say(bot, "left", "right", position=[0.0, 0.0], velocity=[0.0, 0.0])
+    for _ in range(5):
+        await bot.pass_time(0.1)
+
+    assert odometry[-1].pose.pose.position.x == 0.0

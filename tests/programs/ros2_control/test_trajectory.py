@@ -18,7 +18,9 @@ from aionode.interfaces.control_msgs.action import FollowJointTrajectory
 from aionode.interfaces.control_msgs.msg import JointTolerance, JointTrajectoryControllerState
 from aionode.interfaces.control_msgs.srv import QueryTrajectoryState
 from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from aionode.programs._ros2_control.trajectories.pid import Pid
 from aionode.programs._ros2_control.trajectories.splines import Point, Trajectory
+from aionode.programs._ros2_control.trajectories.tolerances import violation
 from aionode.testing import settle
 from tests.programs.ros2_control.conftest import MOVING, Robot
 
@@ -302,3 +304,16 @@ async def test_deactivating_ends_the_goal_and_holds_the_joints(mover: Move) -> N
 
     assert "during deactivate transition" in result.error_string
     assert states(bot) == pytest.approx([0.75, 1.0], abs=0.05)
+
+
+def test_a_joint_that_is_not_measured_yet_spoils_no_later_command() -> None:
+    """An integral of NaN would stay NaN."""
+    pid = Pid(1.0, 0.5, 0.0, -math.inf, math.inf, 0.0)
+
+    assert pid.output(math.nan, 0.0, 0.01) == 0.0
+    assert pid.output(1.0, 0.0, 0.01) == pytest.approx(1.005)
+
+
+def test_a_joint_that_is_not_measured_is_within_no_tolerance() -> None:
+    """Otherwise a goal would succeed that nobody saw reached."""
+    assert violation({"lift": (0.1, 0.0, 0.0)}, Point(0.0, [math.nan]))

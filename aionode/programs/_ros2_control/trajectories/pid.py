@@ -54,6 +54,8 @@ class Pid:
         self.total = 0.0
 
     def output(self, error: float, speed_error: float, period_sec: float) -> float:
-        """Return the command, given the errors over a period."""
+        """Return the command, given the errors over a period; 0 for what is not measured yet."""
+        if not (math.isfinite(error) and math.isfinite(speed_error)):
+            return 0.0
         self.total = min(max(self.total + self.i * error * period_sec, self.least), self.greatest)
         return self.p * error + self.total + self.d * speed_error

@@ -91,6 +91,6 @@ def violation(limits: Limits, error: Point) -> str:
     for joint, (name, allowed) in enumerate(limits.items()):
         for kind, limit in zip(KINDS, allowed, strict=True):
             found = getattr(error, kind)
-            if limit > 0 and found and abs(found[joint]) > limit:
+            if limit > 0 and found and not abs(found[joint]) <= limit:  # also if it is not measured
                 return f"{kind} of {name} are off by {found[joint]:f}, and may be by {limit:f}"
     return ""

@@ -211,6 +211,23 @@ async def test_what_is_lost_between_near_contexts_is_sent_again(
 
 
 @pytest.mark.usefixtures("near")
+async def test_a_context_whose_announcement_of_links_was_lost_is_answered(
+    monkeypatch: pytest.MonkeyPatch, writers: Writers
+) -> None:
+    """It listens for near contexts only, as it knows no other ones."""
+    monkeypatch.setattr(acknowledgements.Acknowledgements, "note_links", lambda *_, **__: None)
+    monkeypatch.setattr(acknowledgements.Acknowledgements, "_check_far", lambda _: None)
+    async with two_nodes() as (a, b):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        subscription = b.create_subscription(Int32, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        await subscription.receive()
+
+        await until(writers["/n"].is_done)
+
+
+@pytest.mark.usefixtures("near")
 @pytest.mark.parametrize("side", ["pub", "sub"])
 async def test_keys_of_topics_wait_for_a_context_that_is_not_near(side: str) -> None:
     """Every process of the domain keeps them, and near contexts use one for all topics."""

@@ -11,7 +11,7 @@ import pytest
 
 from aionode._process.stopped import pid_space
 from aionode.engine.transport import network
-from aionode.engine.transport.network import new_participant
+from aionode.engine.transport.network import new_participant, pid_of
 from aionode.engine.transport.zenoh.connections import stopped_peers
 from aionode.engine.transport.zenoh.connections.stopped_peers import (
     LOOK_S,
@@ -33,6 +33,7 @@ class Scene:
         cuts: The peers of each cut.
         watched: The processes that are looked at.
         said: The keys of what was sent to all others.
+        hidden: The processes that the system hides from this one.
         be_told: Receives what another one has sent to all.
     """
 
@@ -43,6 +44,7 @@ class Scene:
         self.watched: list[int] = []
         self.said: list[str] = []
         self.be_told: Any = None
+        self.hidden: set[int] = set()
         self._loop = loop
         self._clock = clock
 
@@ -63,6 +65,11 @@ class Scene:
         return SimpleNamespace(
             is_stopped=lambda: pid in self.stopped, close=lambda: self.watched.remove(pid)
         )
+
+    def pid_of(self, zid: str) -> int | None:
+        """Return a process that is not hidden."""
+        pid = pid_of(zid)
+        return None if pid in self.hidden else pid
 
     def connect(self, pid: int, monkeypatch: pytest.MonkeyPatch) -> str:
         """Connect with a process of this machine; return its id."""
@@ -88,6 +95,7 @@ async def scene(monkeypatch: pytest.MonkeyPatch) -> Any:
         monkeypatch.setattr(stopped_peers, "start_thread", threading.Thread.run)
         monkeypatch.setattr(stopped_peers, "cut_participants", scene.cut)
         monkeypatch.setattr(stopped_peers, "WatchedProcess", scene.watch)
+        monkeypatch.setattr(stopped_peers, "visible_pid_of", scene.pid_of)
         state: Any = SimpleNamespace(
             participant=new_participant(),
             domain_id=7,
@@ -254,3 +262,15 @@ async def test_after_a_while_each_looks_at_a_few_others_again(
     await scene.step(GIVEN_UP_S + LOOK_S)
 
     assert len(scene.watched) == SUCCESSORS
+
+
+async def test_processes_that_are_hidden_take_the_place_of_none(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The system may hide those of other users: one between them would be looked at by nobody."""
+    scene.hidden.update(MANY[:-1])
+    for pid in MANY:
+        scene.connect(pid, monkeypatch)
+    await scene.step(LOOK_S)
+
+    assert scene.watched == [MANY[-1]]

@@ -15,6 +15,7 @@ A process that waits a long time for a processor is not stopped, and is not give
 from __future__ import annotations
 
 import logging
+import os
 import threading
 from bisect import bisect
 from typing import TYPE_CHECKING, Final
@@ -133,7 +134,7 @@ class StoppedPeers:
         peers = self._state.connections.kinds.keys()
         if peers != self._pids.keys():
             known = self._pids
-            self._pids = {zid: known[zid] if zid in known else pid_of(zid) for zid in peers}
+            self._pids = {zid: known[zid] if zid in known else visible_pid_of(zid) for zid in peers}
             order = sorted(zid for zid, pid in self._pids.items() if pid is not None)
             first = bisect(order, self._state.participant)
             self._successors = set((order[first:] + order[:first])[:SUCCESSORS])
@@ -151,3 +152,9 @@ class StoppedPeers:
             pid = self._pids[zid]
             if pid is not None:
                 processes[zid] = WatchedProcess(pid)
+
+
+def visible_pid_of(zid: str) -> int | None:
+    """Return the process of a session if this one can look at it: the system may hide others'."""
+    pid = pid_of(zid)
+    return pid if pid is not None and os.access(f"/proc/{pid}/stat", os.R_OK) else None

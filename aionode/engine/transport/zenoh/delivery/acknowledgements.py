@@ -118,6 +118,7 @@ class Acknowledgements:
         participants: The other contexts that acknowledge, including the last `GONE` that left.
         present: Those of them whose tokens exist.
         near: The contexts of the same user and host with links.
+        far: Those with links, but of another user or host.
     """
 
     def __init__(
@@ -135,6 +136,8 @@ class Acknowledgements:
         self._announced = announced
         self.present: set[str] = set()
         self.near: set[str] = set()
+        self.far: set[str] = set()
+        self._has_links = False
         # By gid, below the key of their topic: a submessage counts for no endpoint of another
         # topic.
         self._writers: ControlSubscribers[Receive] = ControlSubscribers(
@@ -182,6 +185,7 @@ class Acknowledgements:
         """
         if self._session is None:
             return
+        self._has_links = has_links
         if not has_links:
             self._listen_to_far()
             return
@@ -214,6 +218,7 @@ class Acknowledgements:
         self.participants.clear()
         self.present.clear()
         self.near.clear()
+        self.far.clear()
         self._gone.clear()
         self._ticks.clear()
         self._probes.clear()
@@ -258,9 +263,11 @@ class Acknowledgements:
             data: The submessage.
         """
         is_near = participant in self.near
-        self._control_messages.put(
-            self._near_key(participant) if is_near else submessage_key(key, side, participant), data
-        )
+        if not is_near:
+            self._control_messages.put(submessage_key(key, side, participant), data)
+        # A context whose announcement of links was lost may listen for near ones only.
+        if is_near or (self._has_links and participant not in self.far):
+            self._control_messages.put(self._near_key(participant), data)
 
     def _near_key(self, participant: str) -> str:
         return f"{self._prefix}{participant}/near"
@@ -270,9 +277,11 @@ class Acknowledgements:
         if present and is_near:
             self.near.add(participant)
         elif present:
+            self.far.add(participant)
             self._listen_to_far()
         elif participant not in self.present:  # otherwise it is about to go, or to come back
             self.near.discard(participant)
+            self.far.discard(participant)
 
     def watch(self, tick: Callable[[], bool]) -> None:
         """Call `tick` of an endpoint that waits for something, until it returns False."""
@@ -329,6 +338,7 @@ class Acknowledgements:
             if oldest is not None:
                 self.participants.discard(oldest)
                 self.near.discard(oldest)
+                self.far.discard(oldest)
 
     def _note_present(self, participant: str, key: str) -> None:
         if participant in self.present or not self._announced.admit(participant, key):

@@ -13,7 +13,7 @@ there are three spare ones.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from msgspec import Struct
 
@@ -58,7 +58,7 @@ gossiped, a hundred sessions would send half a million messages.
 """
 
 
-class SessionLease(NamedTuple):
+class SessionLease(Struct, frozen=True):
     """How long a process may be silent before its peers consider it dead.
 
     When a hundred start at once, each is silent for more than ten seconds while it connects with
