@@ -10,6 +10,7 @@ import pytest
 
 from aionode.interfaces.nav_msgs.msg import OccupancyGrid
 from aionode.interfaces.sensor_msgs.msg import JointState, LaserScan
+from aionode.interfaces.std_msgs.msg import String
 from aionode.programs._demo_nodes.dummy_joint_states import DummyJointStates
 from aionode.programs._demo_nodes.dummy_laser import DummyLaser
 from aionode.programs._demo_nodes.dummy_map_server import DummyMapServer
@@ -32,6 +33,17 @@ async def test_what_the_talker_says_the_listener_hears(
     err = capfd.readouterr().err
     assert "[talker]: Publishing: 'Hello World: 2'" in err
     assert "[listener]: I heard: [Hello World: 2]" in err
+
+
+async def test_what_others_publish_is_shown_escaped(
+    start: Start, node_factory: Callable[..., Any], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """It could recolour or retitle the terminal."""
+    start(Listener)
+    node_factory("user").create_publisher(String, "chatter", 10).publish(String(data="\x1b[31mred"))
+    await settle()
+
+    assert r"I heard: [\x1b[31mred]" in capfd.readouterr().err
 
 
 async def test_the_talker_in_python_counts_from_0(

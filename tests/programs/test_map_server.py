@@ -14,7 +14,7 @@ from aionode.interfaces.nav2_msgs.srv import LoadMap
 from aionode.interfaces.nav_msgs.msg import OccupancyGrid
 from aionode.interfaces.nav_msgs.srv import GetMap
 from aionode.lifecycle import TransitionCallbackReturn
-from aionode.programs._map_server.map_file import MapImageError, MapYamlError, load_map
+from aionode.programs._map_server.map_file import ROWS, MapImageError, MapYamlError, load_map
 from aionode.programs._map_server.map_server import MapServer
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import settle
@@ -161,3 +161,19 @@ async def test_a_map_that_cannot_be_read_is_not_configured(
 
     assert await server.trigger_configure() is TransitionCallbackReturn.FAILURE
     assert "Failed to load map yaml file: /nowhere.yaml" in capfd.readouterr().err
+
+
+def test_a_picture_for_which_pillow_would_start_a_program_is_refused(make: Make) -> None:
+    """Any node may have a map loaded; Pillow reads EPS with Ghostscript."""
+    with pytest.raises(MapImageError, match="cannot identify"):
+        load_map(make(image="a.eps"))
+
+
+def test_a_map_of_more_rows_than_are_converted_at_once_is_whole(make: Make) -> None:
+    """In their order."""
+    pixels = np.zeros((2 * ROWS + 1, 1), np.uint8)
+    pixels[ROWS] = 255
+    cells = np.asarray(load_map(make(pixels)).data)
+
+    assert np.flatnonzero(cells == 0).tolist() == [ROWS]
+    assert len(cells) == len(pixels)

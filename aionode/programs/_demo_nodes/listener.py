@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import aionode
 from aionode import Node
+from aionode.errors import escaped
 from aionode.interfaces.std_msgs.msg import String
 
 __all__ = ["Listener", "main"]
@@ -18,7 +19,7 @@ class Listener(Node):
 
     def hear(self, msg: String) -> None:
         """Log a message."""
-        self.get_logger().info(f"I heard: [{msg.data}]")
+        self.get_logger().info(f"I heard: [{escaped(msg.data)}]")
 
 
 def main() -> None:

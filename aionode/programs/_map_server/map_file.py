@@ -14,7 +14,7 @@ import yaml
 
 from aionode._process.bounded_files import read_file
 from aionode._process.bounded_yaml import loaded_yaml
-from aionode.image import pillow
+from aionode.image import FORMATS, pillow
 from aionode.interfaces.geometry_msgs.msg import Point, Pose, Quaternion
 from aionode.interfaces.nav_msgs.msg import MapMetaData, OccupancyGrid
 
@@ -24,6 +24,8 @@ MODES: Final = ("trinary", "scale", "raw")
 OCCUPIED: Final = 100
 FREE: Final = 0
 UNKNOWN: Final = -1
+ROWS: Final = 256
+"""How many rows are converted at once: floating-point numbers take eight times as much memory."""
 
 
 class MapYamlError(ValueError):
@@ -109,12 +111,16 @@ def load_map(path: Path) -> OccupancyGrid:
     file = MapFile.read(path)
     module = pillow()
     try:
-        with module.open(BytesIO(read_file(file.image))) as picture:
+        with module.open(BytesIO(read_file(file.image)), formats=(*FORMATS, "PPM")) as picture:
             has_alpha = "A" in picture.getbands() or "transparency" in picture.info
-            pixels = np.asarray(picture.convert("RGBA"), np.float64) / 255.0
+            pixels = np.asarray(picture.convert("RGBA"))
     except (OSError, SyntaxError, ValueError, module.DecompressionBombError) as error:
         raise MapImageError(f"{file.image}: {error}") from None
-    cells = np.flipud(cells_of(pixels, file, has_alpha=has_alpha))
+    blocks = [
+        cells_of(pixels[row : row + ROWS] / 255.0, file, has_alpha=has_alpha)
+        for row in range(0, len(pixels), ROWS)
+    ]
+    cells = np.flipud(np.concatenate(blocks))
     x, y, yaw = file.origin
     return OccupancyGrid(
         info=MapMetaData(

@@ -7,6 +7,7 @@ from typing import Any
 
 import aionode
 from aionode import DurabilityPolicy, Parameter, QoSProfile
+from aionode.errors import escaped
 from aionode.interfaces.nav2_msgs.srv import LoadMap
 from aionode.interfaces.nav_msgs.msg import OccupancyGrid
 from aionode.interfaces.nav_msgs.srv import GetMap
@@ -100,7 +101,7 @@ class MapServer(LifecycleNode):
             response.result = LoadMap.Response.RESULT_UNDEFINED_FAILURE
             return response
         self.get_logger().info("Handling LoadMap request")
-        response.result = self.read(request.map_url)
+        response.result = self.read(escaped(request.map_url, one_line=True))
         if response.result == LoadMap.Response.RESULT_SUCCESS and self.map is not None:
             response.map = self.map
             self.publisher.publish(self.map)

@@ -39,8 +39,8 @@ TYPES: Final[dict[str, type[Controller]]] = {
 """The controllers; all are imported at once, since the robot moves when one is loaded later."""
 
 
-class RefusedError(RuntimeError):
-    """A request that is not carried out; its text says why."""
+class SwitchError(RuntimeError):
+    """Controllers are not switched as requested; the text says why."""
 
 
 class Controllers:
@@ -184,7 +184,7 @@ class Controllers:
             What was done.
 
         Raises:
-            RefusedError: Nothing was switched, or a controller could not be activated.
+            SwitchError: Nothing was switched, or a controller could not be activated.
         """
         for verb, names in (("Activating", start), ("Deactivating", stop)):
             if names:
@@ -211,7 +211,7 @@ class Controllers:
                 if self.state(name) == "active":
                     await self.deactivate(name)
         if failed:
-            raise RefusedError(f"Unable to activate controllers: [ {' '.join(failed)} ]")
+            raise SwitchError(f"Unable to activate controllers: [ {' '.join(failed)} ]")
         return "Successfully switched controllers!"
 
     def fitting(
@@ -220,14 +220,14 @@ class Controllers:
         """Return the controllers that can be switched; a strict switch needs all.
 
         Raises:
-            RefusedError: The switch is strict, and a controller cannot be switched.
+            SwitchError: The switch is strict, and a controller cannot be switched.
         """
         problems = {name: problem_of(name) for name in names}
         for problem in filter(None, problems.values()):
             self.logger.warning(problem)
             if is_strict:
                 self.logger.error("Aborting, no controller is switched! ('STRICT' switch)")
-                raise RefusedError(problem)
+                raise SwitchError(problem)
         return [name for name, problem in problems.items() if not problem]
 
     def stop_problem(self, name: str) -> str:
@@ -286,7 +286,7 @@ class Controllers:
             if problem:
                 text = f"Unable to activate controller '{name}' since the {problem}"
                 self.logger.warning(text)
-                raise RefusedError(text)
+                raise SwitchError(text)
 
     async def activate(self, name: str) -> bool:
         """Activate a controller, with its interfaces."""

@@ -5,16 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 from aionode import DurabilityPolicy, Node, QoSProfile
+from aionode.errors import escaped
 from aionode.interfaces.controller_manager_msgs import srv
 from aionode.interfaces.controller_manager_msgs.msg import (
     ControllerManagerActivity,
     NamedLifecycleState,
 )
 from aionode.interfaces.lifecycle_msgs.msg import State
-from aionode.programs._ros2_control.controllers import TYPES, Controllers, RefusedError
+from aionode.programs._ros2_control.controllers import TYPES, Controllers, SwitchError
 from aionode.programs._ros2_control.hardware import Hardware
 
 __all__ = ["Services"]
+
+
+def shown(name: str) -> str:
+    """Return a name of a request as it can be logged: no controller has control characters."""
+    return escaped(name, one_line=True)
 
 
 class Services:
@@ -63,7 +69,7 @@ class Services:
 
     def load(self, request: Any, response: Any) -> Any:
         """Load a controller."""
-        response.ok = self.controllers.load(request.name)
+        response.ok = self.controllers.load(shown(request.name))
         self.tell()
         return response
 
@@ -74,7 +80,7 @@ class Services:
             srv.CleanupController.Request: self.controllers.cleanup,
             srv.UnloadController.Request: self.controllers.unload,
         }[type(request)]
-        response.ok = await verb(request.name)
+        response.ok = await verb(shown(request.name))
         self.tell()
         return response
 
@@ -82,13 +88,13 @@ class Services:
         """Deactivate controllers, and activate others."""
         try:
             response.message = await self.controllers.switch(
-                list(request.activate_controllers),
-                list(request.deactivate_controllers),
+                [shown(name) for name in request.activate_controllers],
+                [shown(name) for name in request.deactivate_controllers],
                 is_strict=request.strictness != srv.SwitchController.Request.BEST_EFFORT,
             )
             response.ok = True
             self.logger.info(response.message)
-        except RefusedError as error:
+        except SwitchError as error:
             response.message = str(error)
         self.tell()
         return response
@@ -106,7 +112,7 @@ class Services:
 
     async def set_component(self, request: Any, response: Any) -> Any:
         """Take a hardware component to another state."""
-        name, wanted = request.name, request.target_state
+        name, wanted = shown(request.name), request.target_state
         if name not in self.hardware.components:
             self.logger.error(f"hardware component with name '{name}' does not exist")
             return response

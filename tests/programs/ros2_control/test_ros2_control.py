@@ -553,3 +553,15 @@ def test_mocks_start_where_they_stand() -> None:
 def test_empty_arguments_are_ignored() -> None:
     """Launch files have them for what is not wanted."""
     assert [job.name for job in parsed(["wrist", "", "--inactive"])[1]] == ["wrist"]
+
+
+async def test_names_of_requests_are_logged_escaped(
+    robot: Callable[..., Any], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Any node may send some."""
+    bot = await robot(MOVING)
+    assert not (await bot.call("load_controller", srv.LoadController, name="\x1b[31m\nfake")).ok
+
+    err = capfd.readouterr().err
+    assert r"'\x1b[31m\nfake'" in err
+    assert "\x1b[31m" not in err

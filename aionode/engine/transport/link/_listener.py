@@ -116,7 +116,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     if runtime:
         folder = Path(runtime) / "aionode"
     else:
-        folder = temporary_folder(environ) / f"aionode-{os.getuid()}"
+        folder = system_temporary_folder(environ) / f"aionode-{os.getuid()}"
     size = len(os.fsencode(folder)) + NAME_BYTES
     if size > MAX_PATH_BYTES:  # some contexts with shorter ids would fit
         raise TransportError(
@@ -142,7 +142,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     return folder
 
 
-def temporary_folder(environ: Mapping[str, str]) -> Path:
+def system_temporary_folder(environ: Mapping[str, str]) -> Path:
     """Return the folder of `tempfile.gettempdir`, importing `tempfile` only if it has to search.
 
     It loads random numbers and archives, which take as long as to open Zenoh.
