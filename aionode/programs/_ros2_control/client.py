@@ -105,10 +105,11 @@ class ManagerClient:
         answer = await self.call(
             SetParameters, "set_parameters", SetParameters.Request(parameters=[parameter])
         )
-        if not answer.results[0].successful:
+        result = answer.results[0] if len(answer.results) == 1 else None
+        if result is None or not result.successful:
             raise CommandError(
                 f'Could not set controller param "{name}" to "{value}" for {controller}: '
-                f"{answer.results[0].reason}"
+                + ("the answer has no result" if result is None else result.reason)
             )
         self.node.get_logger().info(
             f'Setting controller param "{name}" to "{value}" for {controller}'

@@ -303,8 +303,10 @@ class Controllers:
 
     async def deactivate(self, name: str) -> None:
         """Deactivate a controller, and release its interfaces."""
-        await self.change(name, "deactivate")
-        self.hardware.release(name)
+        try:
+            await self.change(name, "deactivate")
+        finally:
+            self.hardware.release(name)
 
     async def deactivate_users(self, component: str) -> None:
         """Deactivate the controllers that use a hardware component."""

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import MutableMapping
 from dataclasses import dataclass, field
+from typing import Final
 from xml.etree import ElementTree as ET
 
 from aionode.programs._urdf import Mimic, Robot, named
 
 __all__ = ["Description", "HardwareComponent", "Interface", "Part"]
+
+
+FOLLOWED: Final = ("position", "velocity", "acceleration", "effort")
+"""The states in which a joint follows the one that it mimics."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,17 @@ class Part:
     commands: list[Interface]
     states: list[Interface]
     mimic: Mimic | None
+
+    def follow(self, states: MutableMapping[str, float]) -> None:
+        """Move a joint with the one that it mimics, if any, in the states of a robot."""
+        if self.mimic is None:
+            return
+        for each in self.states:
+            kind = each.name.rpartition("/")[2]
+            source = f"{self.mimic.joint}/{kind}"
+            if kind in FOLLOWED and source in states:
+                offset = self.mimic.offset if kind == "position" else 0.0
+                states[each.name] = offset + self.mimic.multiplier * states[source]
 
 
 @dataclass(frozen=True)

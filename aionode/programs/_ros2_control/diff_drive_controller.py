@@ -179,8 +179,7 @@ class DiffDriveController(Controller):
         return super().on_activate(state)
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Stop the wheels."""
-        self.hardware.commands |= dict.fromkeys(self.command_names, 0.0)
+        """Forget the command; the wheels stop as their interfaces are taken back."""
         self.forget()
         return super().on_deactivate(state)
 

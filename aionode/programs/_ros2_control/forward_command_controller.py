@@ -55,12 +55,6 @@ class ForwardCommandController(Controller):
         self.get_logger().info("activate successful")
         return super().on_activate(state)
 
-    def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Stop what moves at a speed or by a force: nobody gives its next command."""
-        if self.interface in ("velocity", "effort"):
-            self.hardware.commands |= dict.fromkeys(self.command_names, 0.0)
-        return super().on_deactivate(state)
-
     def on_commands(self, msg: Float64MultiArray) -> None:
         """Take commands, unless they do not fit."""
         values = list(msg.data)
@@ -89,12 +83,12 @@ class JointGroupPositionController(ForwardCommandController):
 
 
 class JointGroupVelocityController(ForwardCommandController):
-    """Writes velocities, and zeros when it is deactivated."""
+    """Writes velocities."""
 
     interface = "velocity"
 
 
 class JointGroupEffortController(ForwardCommandController):
-    """Writes efforts, and zeros when it is deactivated."""
+    """Writes efforts."""
 
     interface = "effort"

@@ -97,13 +97,12 @@ class ControllerManager(Node):
         Raises:
             CommandError: It is not a URDF, or its hardware needs a plugin in C++.
         """
-        try:
-            description = Description.of(text)
-        except ValueError as error:
-            raise CommandError(f"robot_description cannot be used: {error}") from None
         default = self.context.ros_distro not in ("humble", "jazzy")
         limits = self.given("enforce_command_limits", default)
-        hardware = self.hardware = Hardware(description, self, limits=limits)
+        try:
+            hardware = self.hardware = Hardware(Description.of(text), self, limits=limits)
+        except ValueError as error:
+            raise CommandError(f"robot_description cannot be used: {error}") from None
         wanted = {
             name: state
             for label, state in INITIAL_STATES.items()

@@ -111,12 +111,7 @@ class MockSystem:
 
     def follow(self, part: Part) -> None:
         """Move a joint with the one that it mimics, and shift what follows at an offset."""
-        if part.mimic is not None:
-            for mode in MODES:
-                name, source = f"{part.name}/{mode}", f"{part.mimic.joint}/{mode}"
-                if name in self.states and source in self.states:
-                    offset = part.mimic.offset if mode == "position" else 0.0
-                    self.states[name] = offset + part.mimic.multiplier * self.states[source]
+        part.follow(self.states)
         name = f"{part.name}/{self.shifted}"
         position = self.commands.get(f"{part.name}/position", math.nan)
         if self.shifted and name in self.states and math.isfinite(position):

@@ -86,13 +86,7 @@ class TopicSystem:
             else:
                 self.states[name] = value
         for part in self.parts:
-            if part.mimic is None:
-                continue
-            for field in FIELDS:
-                name, source = f"{part.name}/{field}", f"{part.mimic.joint}/{field}"
-                if name in self.states and source in self.states:
-                    offset = part.mimic.offset if field == "position" else 0.0
-                    self.states[name] = offset + part.mimic.multiplier * self.states[source]
+            part.follow(self.states)
 
     def write(self) -> None:
         """Publish the commands, unless none is given, or the joints are there."""

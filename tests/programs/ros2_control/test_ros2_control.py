@@ -23,10 +23,12 @@ from aionode.interfaces.std_msgs.msg import Float64MultiArray
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.programs._ros2_control.description import Description
 from aionode.programs._ros2_control.hardware import Hardware
+from aionode.programs._ros2_control.manager import ControllerManager
 from aionode.programs._ros2_control.mock_system import MockSystem
 from aionode.programs._ros2_control.spawner import Spawner, parsed
 from aionode.programs._ros2_control.speed_limiter import SpeedLimiter
 from aionode.testing import settle
+from tests.programs.conftest import Start
 from tests.programs.ros2_control.conftest import LATCHED, MOVING, urdf
 
 
@@ -565,3 +567,10 @@ async def test_names_of_requests_are_logged_escaped(
     err = capfd.readouterr().err
     assert r"'\x1b[31m\nfake'" in err
     assert "\x1b[31m" not in err
+
+
+async def test_a_value_of_the_hardware_that_is_no_number_is_named(start: Start) -> None:
+    """In place of a traceback."""
+    text = urdf(position_state_following_offset="far")
+    with pytest.raises(CommandError, match=r"robot_description cannot be used: .*'far'"):
+        start(ControllerManager, robot_description=text)

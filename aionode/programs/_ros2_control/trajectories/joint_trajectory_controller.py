@@ -149,13 +149,13 @@ class JointTrajectoryController(Controller):
         return super().on_activate(state)
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """End the goal, and stay."""
+        """End the goal, and stay; speeds and forces end as their interfaces are taken back."""
         self.end_goal(Result.INVALID_GOAL, "Current goal cancelled during deactivate transition.")
-        for kind in self.outputs:
+        if "position" in self.outputs:
             for joint, mover in zip(self.joints, self.movers, strict=True):
-                self.hardware.commands[f"{mover}/{kind}"] = (
-                    self.hardware.states[f"{joint}/position"] if kind == "position" else 0.0
-                )
+                self.hardware.commands[f"{mover}/position"] = self.hardware.states[
+                    f"{joint}/position"
+                ]
         self.trajectory = None
         return super().on_deactivate(state)
 
