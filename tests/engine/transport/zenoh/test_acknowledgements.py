@@ -383,11 +383,13 @@ async def test_a_submessage_counts_only_on_the_key_of_its_topic() -> None:
             b.create_subscription(Int32, "m", None, 10)
             for each in (publisher, other):
                 await each.wait_for_subscribers()
+            # Until it is overheard: the session may be known later than the subscriptions.
+            a.create_timer(0.2, lambda: other.publish(Int32(data=0)))
+            key_of_other, _ = await others.key_and_one_of(SubmessageKind.HEARTBEAT)
             publisher.publish(Int32(data=1))
             await until(lambda: heard)
             key, heartbeat = await overheard.key_and_one_of(SubmessageKind.HEARTBEAT)
             to_writer, _ = await overheard.key_and_one_of(ACKNACK)
-            key_of_other, _ = await others.key_and_one_of(SubmessageKind.HEARTBEAT)
             while len(heard) < 2:
                 for lying, number in ((key_of_other, 66), (to_writer, 77), (key, 2)):
                     payload = cdr.encode(Int32(data=number))
