@@ -52,6 +52,13 @@ async def has_ended(bench: Bench, what: str) -> None:
     assert not clients.robot.commands.holders()
 
 
+def seconds_of(answered: Any, how: str) -> float:
+    """Return how long a motion lasted that ended this way, longer where the computer is busy."""
+    outcome = re.fullmatch(rf"stopped after (.*) s: {how}", answered.structured_content["outcome"])
+    assert outcome is not None, answered
+    return float(outcome[1])
+
+
 @pytest.mark.parametrize("what", MOVING)
 async def test_a_cancel_ends_it(assisted: Bench, era: str, what: str) -> None:
     """The same for a watch, which only costs the robot time.
@@ -69,6 +76,7 @@ async def test_a_cancel_ends_it(assisted: Bench, era: str, what: str) -> None:
     await has_ended(assisted, what)
     await until(lambda: any(line["action"] == "tool" for line in assisted.audit))
     lines = [line for line in assisted.audit if line["action"] == "tool"]
+    assert len(lines) == 1 + client.repeats
     assert lines[-1]["result"].endswith("cancelled")
 
 
@@ -139,7 +147,7 @@ async def test_a_move_ends_by_its_time(assisted: Bench, era: str) -> None:
     answered = await client.call_tool(tool, {**arguments, "seconds": 0.4})
     await until(lambda: assisted.base.commands[-1] == 0.0)
 
-    assert re.fullmatch(r"stopped after \d\.\d s: done", answered.structured_content["outcome"])
+    assert seconds_of(answered, "done") >= 0.4
     assert (
         assisted.base.commands[:-1]
         == [pytest.approx(0.2)] * answered.structured_content["commands"]
@@ -153,7 +161,7 @@ async def test_a_goal_ends_at_the_ceiling(assisted: Bench, era: str) -> None:
     answered = await client.call_tool(*GOAL)
 
     assert answered.is_error
-    assert re.fullmatch(r"stopped after \d\.\d s: expired", answered.structured_content["outcome"])
+    assert seconds_of(answered, "expired") >= 0.3
     assert answered.structured_content["status"] == "canceled"
     assert assisted.base.goals == ["begun", "cancelled"]
 
