@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode._packages import Packages, remark_on, use_stand_ins, workspace_of
 from aionode.errors import LaunchFileError
 from aionode.launch._watch import restart_changed
-from aionode.launch.plan import Call, LoadNodes, Log, Opaque, Process, Step, Timer, Watch
+from aionode.launch.plan import Call, LoadNodes, Log, Missing, Opaque, Process, Step, Timer, Watch
 from aionode.rclpy import install
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Plan:
             self._forget_names()
             warnings = list(left_out_texts(context.left_out, steps))
             if warnings and not (self._skip_missing or any(map(does_something, steps))):
-                windows = ", ".join(context.left_out)
+                windows = ", ".join(missing.name for missing in context.left_out)
                 problem = f"starts only graphical tools that are missing: {windows}; {INSTEAD}"
                 raise LaunchFileError(self.path, problem)
             self._steps = [
@@ -166,18 +166,15 @@ class Plan:
         return (text_of(record) for record in self.records())
 
 
-def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iterator[str]:
-    """Yield what is left out, by missing package, and which handlers never run."""
-    for package, entities in left_out.items():
-        name, _, executable = package.partition(" ")
-        what = f"package '{name}' is missing"
-        if executable:
-            what = f"package '{name}' has no executable '{executable}' here"
-        remark = remark_on(name, executable)
+def left_out_texts(left_out: Mapping[Missing, list[Any]], steps: list[Step]) -> Iterator[str]:
+    """Yield what is left out, by what is missing, and which handlers never run."""
+    for missing, entities in left_out.items():
+        is_package = missing.kind == "package"
+        remark = remark_on(missing.name, missing.executable) if is_package else ""
         places = ", ".join(
             f"{entity.describe()} ({entity._LaunchDescriptionEntity__where})" for entity in entities
         )
-        yield f"{what}{remark and f': it is {remark}'}; left out: {places}"
+        yield f"{missing}{remark and f': it is {remark}'}; left out: {places}"
     ids = {id(entity) for entities in left_out.values() for entity in entities}
     for step in steps:
         if isinstance(step, Watch) and not step.ends:

@@ -8,9 +8,11 @@ import importlib.util
 import inspect
 import os
 import re
+import subprocess  # to see that it failed
 import sys
 import traceback
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +27,7 @@ from aionode.errors import (
 from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
 from aionode.launch._stand_ins import missing_module, with_stand_ins
-from aionode.launch.plan import Opaque, Step, Timer, Watch
+from aionode.launch.plan import Missing, Opaque, Step, Timer, Watch
 from aionode.rclpy.missing import advice
 from launch.actions import (
     DeclareLaunchArgument,
@@ -37,11 +39,13 @@ from launch.event_handler import entities_of
 from launch.launch_context import KnownLater, LaunchContext
 from launch.launch_description import LaunchDescription
 from launch.launch_description_entity import LaunchDescriptionEntity
-from launch.stand_in import StandIn
+from launch.stand_in import StandIn, package_of
+from launch.substitutions import UnknownConfiguration
 
 __all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_context"]
 
 FUNCTION = "generate_launch_description"
+PREFIX_PATH = "AMENT_PREFIX_PATH"
 
 ENDINGS = {".py": "python", ".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 """The languages of launch files, by the endings of their names."""
@@ -150,7 +154,8 @@ def module_in(path: str) -> Any:
     sys.dont_write_bytecode = True  # a launch file leaves no .pyc file behind
     try:
         code = compile(text_of(path), str(path), "exec")
-        with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
+        with prefix_path():
+            with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
     except Exception as error:
         raise failure(path, error) from error
     finally:
@@ -173,13 +178,32 @@ def load_file(path: str) -> tuple[Any, Callable[..., Any] | None]:
     return load_description(path), None
 
 
+@contextmanager
+def prefix_path() -> Iterator[None]:
+    """Let launch files that read AMENT_PREFIX_PATH find a path, as where ROS 2 is sourced.
+
+    Without ROS 2, packages are installed with Python. What is started does not get the variable,
+    which would say that ROS 2 is sourced.
+    """
+    if os.environ.get(PREFIX_PATH):
+        yield
+        return
+    os.environ[PREFIX_PATH] = sys.prefix
+    try:
+        yield
+    finally:
+        if os.environ.get(PREFIX_PATH) == sys.prefix:
+            del os.environ[PREFIX_PATH]
+
+
 def description_in(module: Any, path: str) -> Any:
     """Return the result of a module's ``generate_launch_description()``."""
     function = getattr(module, FUNCTION, None)
     if function is None:
         raise LaunchFileError(path, f"has neither {FUNCTION}() nor `async def main(system)`")
     try:
-        description = with_stand_ins(function)
+        with prefix_path():
+            description = with_stand_ins(function)
     except Exception as error:
         raise failure(path, error) from error
     if isinstance(description, StandIn):
@@ -310,8 +334,9 @@ def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
     """
     context.visited = 0
     try:
-        for entity in entities:
-            visit(entity, context, 0)
+        with prefix_path():
+            for entity in entities:
+                visit(entity, context, 0)
     except KnownLater as later:
         context.steps.append(Opaque(str(later)))
     steps, context.steps = context.steps, []
@@ -381,25 +406,70 @@ def is_left_out(entity: LaunchDescriptionEntity, error: Exception, context: Laun
 
     A window is left out even where a missing package is an error: no robot depends on it.
     """
-    package = missing_package(error)
-    if package is None or not (context.skips_missing or is_window(*package.split(" "))):
+    missing = missing_behind(error) or declared_elsewhere(error, context)
+    if missing is None or not (context.skips_missing or is_missing_window(missing)):
         return False
-    entities = context.left_out.setdefault(package, [])
+    entities = context.left_out.setdefault(missing, [])
     if not any(entity is known for known in entities):  # timers are evaluated twice
         entities.append(entity)
     return True
 
 
-def missing_package(error: BaseException | None) -> str | None:
-    """Return the missing package, or the package and its missing executable, behind an error."""
+def is_missing_window(missing: Missing) -> bool:
+    """Return whether what is missing only shows something on a screen."""
+    return missing.kind == "package" and is_window(missing.name, missing.executable)
+
+
+def missing_behind(error: BaseException | None) -> Missing | None:
+    """Return what is missing behind an error."""
     while error is not None:
         if isinstance(error, PackageNotFoundError):
-            return error.name
+            return Missing(error.name)
         if isinstance(error, ExecutableNotFoundError):
-            return f"{error.package} {error.name}"
-        package = missing_module(error) or package_of_stand_in(str(error))
+            return Missing(error.package, executable=error.name)
+        package = missing_module(error) or package_of_stand_in(str(error)) or mishandled(error)
         if package is not None:
-            return package
+            return Missing(package)
+        if isinstance(error, LaunchFileError) and isinstance(error.__cause__, FileNotFoundError):
+            return Missing(error.path, "file")
+        if (program := missing_program(error)) is not None:
+            return Missing(program, "program")
+        error = error.__cause__ or error.__context__
+    return None
+
+
+def mishandled(error: BaseException) -> str | None:
+    """Return the package of a stand-in that code could not handle, as the error says."""
+    if not isinstance(error, TypeError) or StandIn.__name__ not in str(error):
+        return None
+    for frame, _ in reversed(list(traceback.walk_tb(error.__traceback__))):
+        for value in frame.f_locals.values():
+            if isinstance(value, StandIn):
+                return package_of(value.describe())
+    return None
+
+
+def missing_program(error: BaseException) -> str | None:
+    """Return the program that code of a launch file could not run, since it is not installed."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+    is_start = bool(frames) and frames[-1].f_globals.get("__name__") == subprocess.__name__
+    if not (is_start and isinstance(error, FileNotFoundError)):
+        return None
+    return None if error.filename is None else str(error.filename)
+
+
+def declared_elsewhere(error: BaseException | None, context: LaunchContext) -> Missing | None:
+    """Return what is missing if an error is about an argument that it may have declared."""
+    while error is not None:
+        if isinstance(error, UnknownConfiguration):
+            return next(
+                (
+                    missing
+                    for missing, entities in reversed(context.left_out.items())
+                    if any(isinstance(entity, IncludeLaunchDescription) for entity in entities)
+                ),
+                None,
+            )
         error = error.__cause__ or error.__context__
     return None
 

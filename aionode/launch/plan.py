@@ -13,6 +13,7 @@ __all__ = [
     "Emit",
     "LoadNodes",
     "Log",
+    "Missing",
     "Opaque",
     "ParameterValues",
     "Process",
@@ -20,6 +21,26 @@ __all__ = [
     "Timer",
     "Watch",
 ]
+
+
+@dataclass(frozen=True)
+class Missing:
+    """What is not here, so that what needs it is left out.
+
+    Attributes:
+        name: Its name.
+        kind: ``package``, ``file`` or ``program``.
+        executable: The executable that the package lacks; empty if the package is missing.
+    """
+
+    name: str
+    kind: str = "package"
+    executable: str = ""
+
+    def __str__(self) -> str:
+        if self.executable:
+            return f"{self.kind} '{self.name}' has no executable '{self.executable}' here"
+        return f"{self.kind} '{self.name}' is missing"
 
 
 class Step:

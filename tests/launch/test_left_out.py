@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ import pytest
 from aionode._packages import use_stand_ins
 from aionode.errors import LaunchFileError
 from aionode.launch import Plan
+from aionode.launch.plan import Process
 
 if TYPE_CHECKING:
     from tests.launch.conftest import Files
@@ -419,3 +421,158 @@ def generate_launch_description():
 """
     (log,) = records(files, text)
     assert log["log"].startswith("package 'arm_moveit_config' is missing; left out: robot_state")
+
+
+def test_code_that_cannot_handle_what_a_missing_module_gives_it_is_left_out(files: Files) -> None:
+    """Such as code that joins texts; the module is named, not the stand-in."""
+    text = """
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess, OpaqueFunction
+from robot_utils import read_argument
+
+def suffix(arm):
+    return "_".join(["config", arm])
+
+def setup(context):
+    return [ExecuteProcess(cmd=["driver", suffix(read_argument("arm"))])]
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup), ExecuteProcess(cmd=["echo"])])
+"""
+    log, started = records(files, text)
+
+    assert log["log"].startswith(
+        "package 'robot_utils' is missing; left out: OpaqueFunction(setup)"
+    )
+    assert started["argv"] == ["echo"]
+
+
+def test_a_mistake_beside_a_missing_module_stays_an_error(files: Files) -> None:
+    """It would go unnoticed, if it were left out."""
+    text = """
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from robot_utils import read_argument
+
+def setup(context):
+    arm = read_argument("arm")
+    return "_".join(["config", 1])
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup)])
+"""
+    with pytest.raises(LaunchFileError, match="expected str instance, int found"):
+        records(files, text)
+
+
+INCLUDES = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import LaunchConfiguration
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    return LaunchDescription([
+        {include}
+        ExecuteProcess(cmd=["driver", LaunchConfiguration("address")]),
+        ExecuteProcess(cmd=["echo"]),
+    ])
+"""
+
+
+def test_what_needs_an_argument_that_a_missing_file_declares_is_left_out(files: Files) -> None:
+    """A launch file may read the arguments of those that it includes."""
+    include = 'IncludeLaunchDescription([FindPackageShare("simulator"), "/a.launch.py"]),'
+    log, started = records(files, INCLUDES.format(include=include))
+
+    assert log["log"].startswith("package 'simulator' is missing; left out: IncludeLaunch")
+    assert "ExecuteProcess" in log["log"]
+    assert started["argv"] == ["echo"]
+
+
+def test_an_unknown_argument_stays_an_error_if_all_files_are_here(files: Files) -> None:
+    """Nothing can have declared it."""
+    with pytest.raises(LaunchFileError, match="'address' does not exist here"):
+        records(files, INCLUDES.format(include=""))
+
+
+def test_a_file_that_is_included_and_is_not_here_is_left_out(files: Files) -> None:
+    """It may belong to a submodule or a build that is missing, and the file itself is named."""
+    text = FILE.replace('get_package_share_directory("tb3_sim")', '"/nowhere"')
+    logs = [each["log"] for each in records(files, text) if "log" in each]
+
+    assert any(
+        log.startswith("file '/nowhere/launch/sim.launch.py' is missing; left out: IncludeLaunch")
+        for log in logs
+    )
+    with pytest.raises(LaunchFileError, match=r"sim\.launch\.py, which cannot be read"):
+        _ = Plan(files.write("a.launch.py", text)).steps
+
+
+def test_code_that_runs_a_program_that_is_not_installed_is_left_out(files: Files) -> None:
+    """Such as one that makes an environment for a node."""
+    text = """
+import subprocess
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess, OpaqueFunction
+
+def setup(context):
+    subprocess.run(["no-such-program", "sync"], check=True)
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup), ExecuteProcess(cmd=["echo"])])
+"""
+    log, started = records(files, text)
+
+    assert log["log"].startswith("program 'no-such-program' is missing; left out: OpaqueFunction")
+    assert started["argv"] == ["echo"]
+    with pytest.raises(LaunchFileError, match="no-such-program"):
+        _ = Plan(files.write("a.launch.py", text)).steps
+
+
+def test_a_file_that_code_cannot_open_stays_an_error(files: Files) -> None:
+    """It is not a program."""
+    text = """
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=lambda context: open("/nowhere.yaml"))])
+"""
+    with pytest.raises(LaunchFileError, match=r"nowhere\.yaml"):
+        records(files, text)
+
+
+PREFIX = """
+import os
+from launch import LaunchDescription
+from launch.actions import *
+
+at_top = os.environ["AMENT_PREFIX_PATH"]
+
+def setup(context):
+    return [ExecuteProcess(cmd=["in-function", os.environ["AMENT_PREFIX_PATH"]])]
+
+def generate_launch_description():
+    share = ":".join(os.path.join(p, "share") for p in os.getenv("AMENT_PREFIX_PATH").split(":"))
+    return LaunchDescription([
+        ExecuteProcess(cmd=["at-top", at_top, share]), OpaqueFunction(function=setup),
+        ResetEnvironment(), ExecuteProcess(cmd=["last"]),
+    ])
+"""
+
+
+def test_a_launch_file_can_read_where_packages_are_installed(files: Files) -> None:
+    """It expects a sourced ROS 2, which sets the variable."""
+    top, function, _ = records(files, PREFIX)
+
+    assert top["argv"] == ["at-top", sys.prefix, f"{sys.prefix}/share"]
+    assert function["argv"] == ["in-function", sys.prefix]
+
+
+def test_what_is_started_is_not_told_that_ros_is_sourced(files: Files) -> None:
+    """Programs would look there for its message types."""
+    found = Plan(files.write("a.launch.py", PREFIX)).steps
+
+    assert all("AMENT_PREFIX_PATH" not in step.env for step in found if isinstance(step, Process))
+    assert "AMENT_PREFIX_PATH" not in os.environ

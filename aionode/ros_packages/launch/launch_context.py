@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any, Self
 
 from aionode._packages import Packages
-from aionode.launch.plan import Emit, Step, Watch
+from aionode.launch.plan import Emit, Missing, Step, Watch
 
 __all__ = ["KnownLater", "LaunchContext"]
 
@@ -48,6 +48,8 @@ class LaunchContext:
         self.noninteractive = noninteractive
         self.launch_configurations: dict[str, Any] = {}
         self.environment: dict[str, str] = dict(os.environ)
+        self.first_environment = dict(self.environment)
+        """That of this process when the launch began; launch files may change the other one."""
         self.locals = SimpleNamespace()
         self.is_shutdown = False
         self.steps: list[Step] = []
@@ -60,8 +62,8 @@ class LaunchContext:
         self.skips_missing = False
         """Whether to leave out what needs a missing package; otherwise that is an error, unless
         it is a window."""
-        self.left_out: dict[str, list[Any]] = {}
-        """The entities left out because of a missing package, by its name."""
+        self.left_out: dict[Missing, list[Any]] = {}
+        """The entities left out because something is missing."""
         self.ahead = False
         """Whether the entities being evaluated are executed later."""
         self.visited = 0
@@ -84,6 +86,7 @@ class LaunchContext:
         later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
         later.launch_configurations = self.launch_configurations
         later.environment = self.environment
+        later.first_environment = self.first_environment
         later.locals = SimpleNamespace(**vars(self.locals))
         later.load_file = self.load_file
         later.packages = self.packages
@@ -155,9 +158,9 @@ class LaunchContext:
         self.environment = self._environments.pop()
 
     def reset_environment(self) -> None:
-        """Reset the environment to that of this process."""
+        """Reset the environment to that with which the launch began."""
         self.environment.clear()
-        self.environment.update(os.environ)
+        self.environment.update(self.first_environment)
 
     def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
         """Register a handler."""

@@ -68,6 +68,10 @@ def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
         raise SubstitutionFailure(f"{error}; use true or false") from error
 
 
+class UnknownConfiguration(SubstitutionFailure):
+    """There is no launch configuration of a name."""
+
+
 class LaunchConfiguration(Substitution):
     """The value of a launch configuration, such as an argument."""
 
@@ -97,9 +101,8 @@ class LaunchConfiguration(Substitution):
             return str(context.launch_configurations[name])
         if self._LaunchConfiguration__default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
-            raise SubstitutionFailure(
-                f"launch configuration '{name}' does not exist here; known are: {known}"
-            )
+            problem = f"launch configuration '{name}' does not exist here; known are: {known}"
+            raise UnknownConfiguration(problem)
         return perform_substitutions(context, self._LaunchConfiguration__default)
 
 

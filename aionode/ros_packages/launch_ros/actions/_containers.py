@@ -8,7 +8,7 @@ from typing import Any
 
 from aionode._packages import here, remark_on
 from aionode.errors import PackageNotFoundError
-from aionode.launch.plan import Component, LoadNodes
+from aionode.launch.plan import Component, LoadNodes, Missing
 from launch.action import Action
 from launch.launch_context import LaunchContext
 from launch.substitution import SomeSubstitutionsType
@@ -79,7 +79,7 @@ class ComposableNodeContainer(Node):
         for each in foreign:
             package = each.package if each.package in known else error.name
             left_out = LeftOut(each.plugin, self._LaunchDescriptionEntity__where)
-            context.left_out.setdefault(package, []).append(left_out)
+            context.left_out.setdefault(Missing(package), []).append(left_out)
 
 
 @dataclass(frozen=True)
