@@ -46,6 +46,9 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     },
     "foxglove_bridge": {"foxglove_bridge": "_bridges.foxglove_bridge"},
     "image_transport": {"republish": "_camera.republish"},
+    "imu_complementary_filter": {
+        "complementary_filter_node": "_imu_tools.complementary_filter_node"
+    },
     "joy": {"joy_node": "_joy.joy_node"},
     "joy_linux": {"joy_linux_node": "_joy.joy_linux_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},

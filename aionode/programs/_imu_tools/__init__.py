@@ -1,0 +1,1 @@
+"""imu_tools: the orientation of an IMU, from what it measures."""
