@@ -47,8 +47,8 @@ FORMATS: Final = ("BMP", "JPEG", "PNG", "TIFF", "WEBP")
 RVL_HEAD: Final = struct.Struct("<II")
 """The width and height before an RVL picture."""
 MOST_PIXELS: Final = 2**23
-"""Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros: no depth
-camera has as many.
+"""Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros; no depth
+camera has as many pixels.
 """
 MOST_NIBBLES: Final = 9
 """Maximum nibbles of a number: enough for `MOST_PIXELS` zeros."""
@@ -94,8 +94,8 @@ def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
         return np.dtype(np.uint8), 2
     raise MessageError(
         "sensor_msgs/msg/Image.encoding",
-        f"{encoding!r} is unknown; such as mono8, rgb8, bgr8, rgba8, mono16, 8UC3, 32FC1, "
-        "bayer_rggb8 and yuv422 fit",
+        f"{encoding!r} is unknown; use one such as mono8, rgb8, bgr8, rgba8, mono16, 8UC3, 32FC1, "
+        "bayer_rggb8 or yuv422",
     )
 
 
@@ -170,8 +170,8 @@ def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDAr
         return pixels  # another name for the same layout, as 8UC3 for bgr8
     if not (have and want) or dtype != encoding_of(encoding)[0]:
         raise ValueError(
-            f"to_numpy: {encoding} cannot become {desired}: only the order of colours is changed "
-            "here, and the number of bits stays; take passthrough and convert with OpenCV or numpy"
+            f"to_numpy: {encoding} cannot become {desired}: only the order of colours can change "
+            "here, not the number of bits; use passthrough and convert with OpenCV or numpy"
         )
     if want == "m":
         red, green, blue = (
@@ -219,15 +219,15 @@ def from_numpy(
         raise TypeError(f"from_numpy: {type(pixels).__name__} given; a numpy.ndarray is needed")
     if pixels.ndim not in {2, 3}:
         raise ValueError(
-            f"from_numpy: an array of shape {pixels.shape}; (rows, columns) or (rows, columns, "
-            "channels) fit"
+            f"from_numpy: an array of shape {pixels.shape}; use (rows, columns) or (rows, columns, "
+            "channels)"
         )
     height, width = pixels.shape[:2]
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     if encoding == "passthrough":
         types = {name: short for short, name in OPENCV_TYPES.items()}
         if pixels.dtype.name not in types:
-            raise ValueError(f"from_numpy: {pixels.dtype.name}; {', '.join(types)} fit")
+            raise ValueError(f"from_numpy: {pixels.dtype.name}; use one of {', '.join(types)}")
         encoding = f"{types[pixels.dtype.name]}C{channels}"
     dtype, wanted = encoding_of(encoding)
     if (pixels.dtype.newbyteorder("="), channels) != (dtype, wanted):
@@ -277,8 +277,8 @@ def to_pil(image: Image) -> PILImage:
     mode = modes.get(image.encoding if wanted == "passthrough" else wanted)
     if mode is None:
         raise ValueError(
-            f"to_pil: {image.encoding} is none of PIL's; {', '.join(modes)}, bgr8 and bgra8 fit; "
-            "use to_numpy, which takes all, and PIL.Image.fromarray"
+            f"to_pil: PIL has no mode for {image.encoding}, only for {', '.join(modes)}, bgr8 and "
+            "bgra8; use to_numpy, which takes every encoding, and PIL.Image.fromarray"
         )
     native = np.ascontiguousarray(pixels, pixels.dtype.newbyteorder("="))
     picture: PILImage = pillow().frombuffer(
@@ -338,17 +338,18 @@ def compress_depth(
 ) -> CompressedImage:
     """Compress a depth image as image_transport's ``compressedDepth`` does; the header is kept.
 
-    16 bits stay as they are, in millimetres. Metres of 32FC1 become 16 bits of inverse depth, which
-    are finer the nearer; what 16 bits cannot hold is unknown afterwards.
+    Depths of 16 bits stay as they are, in millimetres. Those of 32FC1, in metres, become 16 bits of
+    inverse depth, whose steps are finer at close range; those that 16 bits cannot hold become
+    unknown.
 
     Args:
         image: An image of one channel: 16UC1, mono16 or 32FC1.
-        depth_max: Depths beyond this, in metres, are unknown afterwards.
+        depth_max: Depths beyond this, in metres, become unknown.
         depth_quantization: The depth at which the steps of inverse depth are 1 m.
         compress_level: How hard PNG compresses, from 0 to 9.
 
     Raises:
-        ValueError: The image has another encoding.
+        ValueError: the image has another encoding.
         MessageError, ModuleNotFoundError: as `to_pil`.
     """
     numerator = offset = np.float32(0)
@@ -365,7 +366,7 @@ def compress_depth(
         picture = np.where(pixels <= min(depth_max * 1000.0, 65535.0), pixels, 0).astype(np.uint16)
     else:
         raise ValueError(
-            f"compress_depth: {image.encoding} is no depth; 16UC1, mono16 and 32FC1 fit"
+            f"compress_depth: {image.encoding} is not for depths; use 16UC1, mono16 or 32FC1"
         )
     png = compress(from_numpy(picture, "mono16"), "png", compress_level=compress_level)
     return CompressedImage(
@@ -388,7 +389,7 @@ def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> I
 
     Raises:
         TypeError: `image` is not a CompressedImage.
-        MessageError: Its data cannot be read, or it has another size (a ValueError).
+        MessageError: its data cannot be read, or it has another size (a ValueError).
         ModuleNotFoundError: Pillow is not installed, which RVL does not need.
     """
     if not isinstance(image, CompressedImage):
@@ -409,7 +410,7 @@ def decompress(image: CompressedImage, size: tuple[int, int] | None = None) -> I
     except (OSError, SyntaxError, pillow().DecompressionBombError) as error:
         raise MessageError(
             "sensor_msgs/msg/CompressedImage.data",
-            f"no image that can be read ({error}); its format is given as {image.format!r}",
+            f"cannot be read as an image ({error}); its format is given as {image.format!r}",
         ) from error
     message = from_pil(picture, image.header)
     return depth_of(message, DEPTH_HEAD.unpack_from(data), image.format) if is_depth else message
@@ -420,7 +421,7 @@ def check_size(given: tuple[int, int], wanted: tuple[int, int] | None) -> None:
     if wanted not in (None, given):
         raise MessageError(
             "sensor_msgs/msg/CompressedImage.data",
-            f"{given[0]} by {given[1]} pixels; {wanted[0]} by {wanted[1]} fit",
+            f"{given[0]} by {given[1]} pixels; {wanted[0]} by {wanted[1]} are expected",
         )
 
 
@@ -429,19 +430,19 @@ def depths_of_rvl(
     format: str,  # noqa: A002  # the field's name
     size: tuple[int, int] | None,
 ) -> npt.NDArray[np.uint16]:
-    """Return the picture of compressedDepth's lossless RVL, which has a width and height.
+    """Decode compressedDepth's lossless RVL, which begins with a width and height.
 
     A number is a sequence of nibbles with three bits each, the lowest first; all but the last have
     the highest bit set. The numbers are: how many pixels are 0, how many of the following are not,
-    and for each of these the difference to the one before, with its sign as the lowest bit; and so
-    on.
+    and for each of these the difference from the one before, with its sign as the lowest bit; and
+    so on.
 
     Raises:
-        MessageError: The data end too early, are malformed, or claim too many pixels.
+        MessageError: the data end too early, are malformed, or claim too many pixels.
     """
     wrong = MessageError(
         "sensor_msgs/msg/CompressedImage.data",
-        f"no RVL picture of at most {MOST_PIXELS} pixels; its format is given as {format!r}",
+        f"not an RVL picture of at most {MOST_PIXELS} pixels; its format is given as {format!r}",
     )
     if len(data) < RVL_HEAD.size:
         raise wrong
@@ -454,7 +455,7 @@ def depths_of_rvl(
     words = np.frombuffer(data[: len(data) - len(data) % 4], "<u4").astype(">u4")
     depths = np.zeros(count, np.uint16)
     done = 0  # pixels
-    followers = 0  # depths that are left of the run that began in the block before
+    followers = 0  # depths left of the run that began in the previous block
     last = np.uint16(0)
     rest = np.empty(0, np.int32)
     for block in numbers_of_rvl(words.view(np.uint8)):
@@ -521,7 +522,7 @@ def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Ima
     if picture.encoding != "mono16":
         raise MessageError(
             "sensor_msgs/msg/CompressedImage.data",
-            f"depth of 16 bits was expected, and its picture is {picture.encoding}",
+            f"a depth of 16 bits was expected, but its picture is {picture.encoding}",
         )
     pixels = to_numpy(picture)
     if not format.startswith("32FC1"):

@@ -82,7 +82,7 @@ def dtype_from_fields(
             )
         if field.datatype not in DTYPES:
             raise MessageError(
-                f"{path}.datatype", f"{field.datatype} is unknown; a constant of PointField fits"
+                f"{path}.datatype", f"{field.datatype} is unknown; use a constant of PointField"
             )
         dtype = np.dtype(order + DTYPES[field.datatype])
         formats.append(dtype if field.count <= 1 else (dtype, (field.count,)))
@@ -115,7 +115,9 @@ def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
         kind = part.base.str[1:]
         if kind not in DATATYPES:
             fitting = ", ".join(np.dtype(known_dtype).name for known_dtype in DATATYPES)
-            raise TypeError(f"{name}: {part.base.name} is no type of a PointField; {fitting} fit")
+            raise TypeError(
+                f"{name}: {part.base.name} is not a type of a PointField; use one of {fitting}"
+            )
         count = int(np.prod(part.shape, dtype=int))
         fields.append(PointField(name=name, offset=offset, datatype=DATATYPES[kind], count=count))
     return fields
@@ -301,7 +303,7 @@ def create_cloud(
     dtype = dtype_from_fields(fields, step)
     array = arranged(points, dtype)
     if array.ndim > 2:
-        raise ValueError(f"create_cloud: {array.ndim} dimensions of points; 1 or 2 fit (rows)")
+        raise ValueError(f"create_cloud: {array.ndim} dimensions of points; use 1, or 2 for rows")
     height, width = array.shape if array.ndim == 2 else (1, array.shape[0])
     array = np.ascontiguousarray(array)
     return PointCloud2(

@@ -170,7 +170,7 @@ def best_loop_factory() -> LoopFactory | None:
     """Return the factory of the event loop; None means asyncio's own.
 
     Raises:
-        ConfigurationError: ``AIONODE_LOOP`` names none, or one that is not installed (a
+        ConfigurationError: ``AIONODE_LOOP`` names no event loop, or one that is not installed (a
             ValueError).
     """
     wanted = os.environ.get(LOOP_VARIABLE, "")
@@ -245,7 +245,7 @@ def _coroutine_of(node: Runnable) -> Coroutine[Any, Any, None]:
 
 
 async def _run_node(node: Node) -> None:
-    """Run a node without logging its failure, of which `run` prints more."""
+    """Run a node without logging its failure, since `run` prints it in more detail."""
     await node.run()
 
 

@@ -239,5 +239,5 @@ def test_mistakes_say_what_fits() -> None:
         create_cloud_xyz32(HEADER, XYZ[:, :2])
     with pytest.raises(ValueError, match="the points have no 'x'; they have ring"):
         create_cloud(HEADER, [field("x", 0)], np.zeros(1, LIDAR)[["ring"]])
-    with pytest.raises(TypeError, match="id: int64 is no type of a PointField"):
+    with pytest.raises(TypeError, match="id: int64 is not a type of a PointField"):
         fields_from_dtype([("id", "i8")])

@@ -50,7 +50,7 @@ def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
         if stat.S_ISDIR(mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), name)
         if not is_given and not stat.S_ISREG(mode):
-            raise OSError(errno.EINVAL, "a pipe or a device, and no file", name)
+            raise OSError(errno.EINVAL, "a pipe or a device, not a file", name)
         with os.fdopen(descriptor, "rb", closefd=False) as file:
             content = b""
             while len(content) <= most and (piece := file.read(max(PIECE, len(content)))):

@@ -77,7 +77,7 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
 def is_cancelled_task() -> bool:
     """Return whether the running task is being cancelled.
 
-    If not, a CancelledError that reaches it is that of something it awaited, or a mistake.
+    If not, a CancelledError that reaches it comes from something it awaited, or is a mistake.
     """
     task = asyncio.current_task()
     return task is not None and task.cancelling() > 0

@@ -1,4 +1,4 @@
-"""Imports without the collection of garbage, which finds next to none meanwhile."""
+"""Imports without garbage collection, which would find next to nothing."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ def program_has_frozen() -> bool:
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Pause the automatic collection of garbage, unless the program has switched it off itself.
+    """Pause automatic garbage collection, unless the program has switched it off itself.
 
-    Nearly everything that an import creates is kept, but Python looks through it for garbage again
-    and again: that is a tenth of the time until a node runs. So what exists at the end also becomes
-    old at once, as if collections had found it alive, unless the program has frozen objects.
+    Nearly everything that an import creates is kept, but Python searches it for garbage repeatedly,
+    which takes a tenth of the time until a node runs. So every object that exists at the end is
+    moved to the oldest generation, as if collections had found it alive, unless the program has
+    frozen objects.
     """
     collects = gc.isenabled()
     gc.disable()

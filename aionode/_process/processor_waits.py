@@ -1,4 +1,4 @@
-"""How long the loops of this process have waited for a processor, and the report of that."""
+"""Counts and reports how long the loops of this process have waited for a processor."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ REPORT_NS: Final = 60_000_000_000
 """Minimum time between two reports, in nanoseconds."""
 
 MUCH_NS: Final = REPORT_NS // 100
-"""From which sum of waits on there is a report, in nanoseconds: fewer are counted only."""
+"""The sum of waits from which there is a report, in nanoseconds; less is only counted."""
 
 logger = logging.getLogger("aionode.load")
 
 
 class ProcessorWaits:
-    """Counts callbacks that took long because their thread was ready to run and had no processor.
+    """Counts callbacks that took long because their thread was ready to run but had no processor.
 
-    Nothing in the program mends that, so the log has one line a minute for the whole process, and
-    none before the waits are a hundredth of a minute in sum. `top` and `doctor` show all of them.
+    Nothing in the program can cure that, so the log has at most one line a minute for the whole
+    process, and none before the waits add up to a hundredth of a minute. `top` and `doctor` show
+    all of them.
 
     Attributes:
-        count: How many callbacks have waited so for longer than their budget.
-        total_ns: How long in all.
-        longest_ns: The longest of them.
+        count: How many callbacks have waited for a processor for longer than their budget.
+        total_ns: The sum of their waits.
+        longest_ns: The longest of their waits.
     """
 
     def __init__(self) -> None:
@@ -55,7 +56,7 @@ class ProcessorWaits:
         load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
         cores = os.cpu_count() or 1
         self._reported, self._reported_ns = (self.count, self.total_ns), now_ns
-        more = ", which is more than these can do at a time" if load > cores else ""
+        more = ", which is more than they can run at a time" if load > cores else ""
         logger.warning(
             "callbacks of this process wait for a processor: %d since the last such line, %.0f ms "
             "in all; the load is %.1f on %d cores%s",
@@ -68,4 +69,4 @@ class ProcessorWaits:
 
 
 WAITS: Final = ProcessorWaits()
-"""Those of this process."""
+"""The waits of this process."""

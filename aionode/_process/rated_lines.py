@@ -33,8 +33,8 @@ class RatedLines(Generic[K]):
     The first event of each subject is logged, and then how many more there were: after 10 s, 20 s
     and so on. A subject that was quiet for longer starts over.
 
-    Any thread may record an event: of two at the same moment one may not be counted, which does no
-    harm.
+    Any thread may record an event. If two are recorded at the same moment, one may not be counted,
+    which does no harm.
 
     Args:
         now_ns: Returns the time of a steady clock, in nanoseconds.
@@ -51,8 +51,8 @@ class RatedLines(Generic[K]):
         """Return the end of the line to log now about a subject; None for no line.
 
         Args:
-            subject: What it is about.
-            count: How many happened at once.
+            subject: What the line is about.
+            count: How many events happened at once.
             has_room: Called before a line is logged; if it returns false, the line is omitted, and
                 a new subject is not remembered.
         """

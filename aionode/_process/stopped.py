@@ -25,10 +25,10 @@ STOPPED: Final = {b"T", b"t"}
 
 
 def pid_space() -> int | None:
-    """Return 16 bits that name the processes among which a pid means the same one.
+    """Return 16 bits that identify the set of processes to which this process's pids apply.
 
-    Containers, and other machines, have pids of their own. None if the system does not tell, or
-    tells of the processes outside of this one's container.
+    Containers and other machines have pids of their own. None if the system does not say, or shows
+    the processes outside this one's container.
     """
     with suppress(OSError):
         if OWN_PROCESS.readlink().name != str(os.getpid()):
@@ -54,10 +54,10 @@ def is_stopped(pid: int) -> bool:
 
 
 class WatchedProcess:
-    """Another process that is looked at again and again.
+    """Another process that is checked repeatedly.
 
-    Most processes have run between two looks, which their main thread's processor time tells in an
-    eighth of the time that `is_stopped` takes.
+    Most processes have run between two checks, and their main thread's processor time shows that in
+    an eighth of the time that `is_stopped` takes.
 
     Args:
         pid: The process.
@@ -74,7 +74,7 @@ class WatchedProcess:
             self._ran = os.pread(self._descriptor, 128, 0)
 
     def is_stopped(self) -> bool:
-        """Return whether it is stopped, and has not run since it was last looked at."""
+        """Return whether it is stopped, and has not run since the last check."""
         if self._descriptor is not None:
             try:
                 ran = os.pread(self._descriptor, 128, 0)

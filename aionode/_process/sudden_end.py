@@ -3,10 +3,10 @@
 Two lists of functions are called, in this order: `STOPS` send the stops of open leases, and `SENDS`
 hand published messages to the operating system.
 
-It starts with a signal: the second request to end, or Ctrl-Z while a lease is open. The handler
-runs in the main thread, between any two bytecodes, and the interrupted code does not continue
-meanwhile. So the handler first checks whether that code is a publisher or transport: a socket may
-hold part of a frame that the connection does not know of yet. Such a step is over soon, and the
+A signal starts it: the second request to end, or Ctrl-Z while a lease is open. The handler runs in
+the main thread, between any two bytecodes, and the interrupted code does not continue meanwhile. So
+the handler first checks whether that code is a publisher or transport: a socket may hold part of a
+frame that the connection does not know of yet. Such a step is over soon, and the
 signal is sent again after it. At any other moment the main thread may publish and send as in a
 callback, and holds none of their locks. When the interpreter exits, only the stops are sent.
 """
@@ -130,8 +130,8 @@ class LastMessages:
             frame: What the signal interrupted.
 
         Returns:
-            Whether this call did so: not if another one is at it, nor if `frame` is inside a
-            publisher or transport. In that case the signal is sent again.
+            Whether this call sent them: not if another call is sending, nor if `frame` is inside a
+            publisher or transport. In the latter case the signal is sent again.
         """
         if self._has_begun:
             return False

@@ -1,4 +1,4 @@
-"""Folders that are removed with this process, also if it ends without exit handlers."""
+"""Temporary folders that are removed with this process, even if it ends without exit handlers."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import os
 __all__ = ["remove_temporary_folders", "temporary_folder"]
 
 _folders: list[tuple[int, str]] = []
-"""The process that removes a folder, which is not a fork of it; and the folder."""
+"""The process that removes a folder, since forks of it must not, and the folder."""
 
 
 def temporary_folder(prefix: str) -> str:
     """Create a folder that is removed with this process, and return its path.
 
     Args:
-        prefix: How its name begins.
+        prefix: The prefix of its name.
     """
-    import tempfile  # it loads archives, which few programs need
+    import tempfile  # imports archive modules, which few programs need
 
     if not _folders:
         atexit.register(remove_temporary_folders)
@@ -27,7 +27,7 @@ def temporary_folder(prefix: str) -> str:
 
 
 def remove_temporary_folders() -> None:
-    """Remove the folders; whoever ends the process by `os._exit` calls this before."""
+    """Remove the folders; call this before ending the process by `os._exit`."""
     while _folders:
         process, folder = _folders.pop()
         if process == os.getpid():

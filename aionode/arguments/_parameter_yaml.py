@@ -312,8 +312,8 @@ def node_name(events: Events, parts: tuple[str, ...]) -> str:
             events.fail(f"'{full}' contains repeated forward slashes or ends with one")
         if not re.fullmatch(NODE_PART, token):
             events.fail(
-                f"'{token}' in '{full}' is no token of a node's name: letters, digits and '_', "
-                "or a whole '*' or '**'"
+                f"'{token}' in '{full}' is not a token of a node's name; use letters, digits and "
+                "'_', or '*' or '**' alone"
             )
     return full
 

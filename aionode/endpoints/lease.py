@@ -30,7 +30,7 @@ MsgT = TypeVar("MsgT")
 LeasedT_contra = TypeVar("LeasedT_contra", contravariant=True)
 
 LOCK_S: Final = 0.05
-"""How long another thread waits for a command that is just being published."""
+"""How long another thread waits for a command that is being published."""
 
 
 def send_stops(within_sec: float = REPEAT_S) -> bool:

@@ -355,7 +355,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             for writer in self._ready_writers:
                 await writer.drain()
         except asyncio.CancelledError:
-            # As in asyncio.timeout: a cancellation of others passes.
+            # As in asyncio.timeout, a cancellation by others propagates.
             if not self._draining[task] or task.uncancel() > cancelling:
                 raise
             end = self._end_of_wait()

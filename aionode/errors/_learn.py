@@ -13,7 +13,7 @@ class ContractError(AionodeError, ValueError):
     Attributes:
         path: The file of the contract.
         where: The place in it, such as ``line 7: observations[0].max_age``; empty for the whole.
-        problem: What was given, and what fits.
+        problem: What was given, and what is valid.
     """
 
     def __init__(self, path: str, where: str, problem: str) -> None:

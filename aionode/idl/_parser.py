@@ -174,7 +174,7 @@ def member(line: str, number: int, *, recorded: bool) -> MemberText:
     assert name_match is not None  # noqa: S101 (it also matches an empty text)
     name, at, rest = name_match[1], name_match.start(1), name_match.end()
     if not name:
-        raise LineError(at, f"the name is missing; '{line[start:end]} some_name' would fit")
+        raise LineError(at, f"the name is missing; write '{line[start:end]} some_name'")
     constant = line.startswith("=", rest)
     name = field_name(name, at, recorded=recorded, constant=constant)
     if constant:

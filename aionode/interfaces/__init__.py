@@ -1,17 +1,17 @@
 """ROS 2's standard interfaces as Python classes, under their ROS names.
 
 ``std_msgs/msg/String`` is `aionode.interfaces.std_msgs.msg.String`. The modules of the packages are
-generated from ROS 2 Jazzy's definitions; this one finds a class by its name, also one that the
-program itself has written. Nothing is imported before it is asked for.
+generated from ROS 2 Jazzy's definitions; this one finds a class by its name, including classes that
+the program itself defines. Nothing is imported before it is asked for.
 
 Packages with definitions of their own can be imported here as well, without a build:
 ``from aionode.interfaces.my_msgs.msg import Words``. They are looked for in the folders of
 ``AIONODE_INTERFACES`` and ``--interfaces``, in the ROS 2 that is sourced (``AMENT_PREFIX_PATH``),
 and in the workspace around the program: the folder ``src``, or else the repository, that it is in.
 
-Types that the sourced ROS 2 defines differently are its own. ``ROS_DISTRO`` alone brings the known
-differences. Of the shipped packages that are not in `OF_ROS`, those of a folder or of the workspace
-come first.
+The sourced ROS 2's definition of a type takes precedence over the shipped one. ``ROS_DISTRO`` alone
+selects the known differences. Packages that are not in `OF_ROS` may be defined in a folder or in
+the workspace, and that definition takes precedence as well.
 """
 
 from __future__ import annotations
@@ -64,32 +64,32 @@ PARTS = {
     "SendGoal": "Impl.SendGoalService",
     "GetResult": "Impl.GetResultService",
 }
-"""Where the types are that belong to a service or an action, by the ends of their names."""
+"""The attribute of a service or an action that is a type, by the end of the type's name."""
 
 LONGEST_NAME = 300
-"""Longer names are compared with none: that takes time with their length."""
+"""Longer names get no suggestions, since a comparison takes time that grows with their length."""
 
 LISTED = r"(?ms)^__all__ = \[(.*?)\]"
 """Where a generated module lists its types."""
 
 CLOSE = 0.85
-"""How like a name has to be to be suggested, from 0 to 1."""
+"""How similar a name has to be to be suggested, from 0 to 1."""
 
 
 def get_interface(name: str) -> Any:
     """Return the class of a message, service or action type.
 
-    Type checkers know nothing of a class that is found by name: the result is `Any` to them, and
-    fits wherever a class of its kind is wanted. A type that neither aionode nor the program has is
-    known to the nodes that use it: `Node.find_type` asks those.
+    Type checkers know nothing of a class that is found by name: to them the result is `Any`, which
+    they accept wherever a class of its kind is wanted. For a type that neither aionode nor the
+    program has, `Node.find_type` asks the nodes that use it.
 
     Args:
         name: Its ROS name, such as ``std_msgs/msg/String``; ``std_msgs/String`` is understood if
-            there is only one kind of that name. The types that belong to a service or an action
-            have names, too: ``example_interfaces/action/Fibonacci_FeedbackMessage``.
+            only one kind of interface has that name. The types that belong to a service or an
+            action have names, too: ``example_interfaces/action/Fibonacci_FeedbackMessage``.
 
     Raises:
-        InterfaceNotFoundError: There is no such type; the error has names that are close.
+        InterfaceNotFoundError: There is no such type; the error suggests similar names.
         IdlError: The definition of the type, in a folder that was loaded, is not valid.
     """
     parts = name.split("/")
@@ -128,7 +128,7 @@ def part_of(name: str, whole: Any) -> Any:
         whole: The class of the service or action.
 
     Raises:
-        InterfaceNotFoundError: It has no such part: a service has no goal.
+        InterfaceNotFoundError: There is no such part: a service has no goal, for example.
     """
     try:
         return attrgetter(PARTS[name.rpartition("_")[2]])(whole)
@@ -152,19 +152,19 @@ def get_action(name: str) -> Any:
 
 
 def fitting(cls: object, example: str) -> str:
-    """Return which class fits in the place of one that is not aionode's.
+    """Return, for an error, which class to use in place of one that is not aionode's.
 
     Classes that rosidl has generated, and those of `aionode.rclpy`, are in modules of their package.
 
     Args:
         cls: What was given.
-        example: The class to name if that tells nothing.
+        example: The class to name if the module of `cls` says nothing.
     """
     package, _, module = getattr(cls, "__module__", "").partition(".")
     kind = module.partition(".")[0]
     if not isinstance(cls, type) or kind not in KINDS or not PACKAGE_NAME.fullmatch(package):
         return f"use one such as {example}"
-    return f"nodes of aionode take `from {__name__}.{package}.{kind} import {cls.__name__}`"
+    return f"use aionode's own: `from {__name__}.{package}.{kind} import {cls.__name__}`"
 
 
 def of_kind(name: str, base: type[Any], what: str) -> type[Any]:
@@ -194,10 +194,10 @@ def interface_names(package: str | None = None) -> tuple[str, ...]:
 
 
 def known_packages() -> frozenset[str]:
-    """Return the names of all packages: shipped, loaded, written, of folders, or sourced."""
+    """Return the names of all packages: shipped, loaded, defined here, in folders, or sourced."""
     names: frozenset[str] = shipped_packages() | loaded_packages()
     names |= {name.split("/")[0] for name in TYPES_BY_NAME}
-    names |= import_module("aionode.idl.named").packages()  # by name: it is made of this package
+    names |= import_module("aionode.idl.named").packages()  # by name, since it imports this package
     if is_sourced():
         names |= import_module("aionode.idl._installed").packages()
     return names
@@ -229,7 +229,7 @@ def types_of(package: str, kind: str) -> dict[str, type[Any]]:
 
 
 def type_of(package: str, kind: str, name: str) -> type[Any] | None:
-    """Return the type that `types_of` has under a name, without a look at all others."""
+    """Return the type that `types_of` has under a name, without looking at all the others."""
     if not package.isidentifier() or kind not in KINDS:
         return None
     typename = f"{package}/{kind}/{name}"
@@ -257,7 +257,7 @@ def type_names_of(package: str, kind: str) -> set[str]:
 
 
 def types_written(package: str, kind: str) -> dict[str, type[Any]]:
-    """Return the types of one kind in a package that the program itself has written, by name."""
+    """Return the types of one kind in a package that the program itself has defined, by name."""
     prefix = f"{package}/{kind}/"
     return {
         name.removeprefix(prefix): value
@@ -267,7 +267,7 @@ def types_written(package: str, kind: str) -> dict[str, type[Any]]:
 
 
 def package_members(package: str, kind: str) -> dict[str, Any]:
-    """Return what the module of one kind of a package has, types among it; nothing without one."""
+    """Return the attributes of the module of one kind in a package; empty if there is none."""
     module_name = f"{__name__}.{package}.{kind}"
     try:
         return vars(import_module(module_name))
@@ -278,7 +278,7 @@ def package_members(package: str, kind: str) -> dict[str, Any]:
 
 
 def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
-    """Return the error for a name that is not there, with names that are close."""
+    """Return the error for a name that does not exist, with suggestions of similar names."""
     import difflib  # for unknown names only
 
     packages = known_packages()
@@ -345,16 +345,16 @@ OF_ROS = frozenset(
         "visualization_msgs",
     }
 )
-"""Shipped packages that ROS 2 itself releases; a robot has a release of the others of its own."""
+"""Shipped packages that ROS 2 itself releases; of the others, a robot has its own versions."""
 
 
 def is_sourced() -> bool:
-    """Whether definitions besides the shipped ones are to be looked for."""
+    """Return whether to look for definitions besides the shipped ones."""
     return bool(os.environ.get("AMENT_PREFIX_PATH") or os.environ.get("ROS_DISTRO"))
 
 
 class DefinitionFinder:
-    """Finds ``aionode.interfaces.<package>.<kind>`` besides the shipped ones as they are."""
+    """Finds ``aionode.interfaces.<package>.<kind>`` where the shipped one does not suffice."""
 
     def find_spec(
         self,
@@ -362,7 +362,7 @@ class DefinitionFinder:
         path: Sequence[str] | None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to import a package, or None if the shipped one is all there is."""
+        """Return how to import a package, or None if there is only the shipped one."""
         package, _, kind = fullname.removeprefix(f"{__name__}.").partition(".")
         if not fullname.startswith(f"{__name__}.") or package in FIXED:
             return None
@@ -371,7 +371,7 @@ class DefinitionFinder:
         if not is_sourced():
             return None
         shipped = PathFinder.find_spec(fullname, path, target)
-        # By name, since `aionode.idl` is made of this package.
+        # By name, since `aionode.idl` imports this package.
         installed = import_module("aionode.idl._installed")
         if kind not in KINDS or not installed.has_types(package, kind):
             return shipped
@@ -380,10 +380,10 @@ class DefinitionFinder:
 
 
 def has_sources(package: str) -> bool:
-    """Return whether a folder that was named, or the workspace, defines a package."""
+    """Return whether a named folder or the workspace defines a package."""
     from aionode._packages import here  # for the few packages that may be in a workspace
 
-    module = "aionode.idl.named"  # by name: it is made of this package; and it loads parsers
+    module = "aionode.idl.named"  # by name, since it imports this package; and it loads parsers
     is_named = module in sys.modules or os.environ.get("AIONODE_INTERFACES")
     if not is_named and package not in here().sources():
         return False
@@ -394,14 +394,14 @@ def has_sources(package: str) -> bool:
 def found_elsewhere(fullname: str, package: str, kind: str) -> ModuleSpec | None:
     """Return how to import a package that is not shipped, or its types of one kind.
 
-    A folder that was named comes first, then the ROS 2 that is sourced, then the workspace.
+    Named folders come first, then the sourced ROS 2, then the workspace.
 
     Raises:
         ModuleNotFoundError: No package of that name has definitions.
     """
     if not PACKAGE_NAME.fullmatch(package) or (kind and kind not in KINDS):
         return None
-    folders = import_module("aionode.idl.named")  # by name: it is made of this package
+    folders = import_module("aionode.idl.named")  # by name, since it imports this package
     spec: ModuleSpec | None = folders.found(fullname, package, kind)
     if spec is not None:
         return spec

@@ -96,7 +96,8 @@ def description_of_text(path: str, text: bytes | None, endings: Iterable[str]) -
     content = text_of(path) if text is None else text
     kind = kinds[0] if len(kinds) == 1 else kind_of(path, content)
     if kind not in kinds:
-        raise LaunchFileError(path, f"is in {kind}; {', '.join(dict.fromkeys(kinds))} fit")
+        allowed = " or ".join(dict.fromkeys(kinds))
+        raise LaunchFileError(path, f"is in {kind}; {allowed} is expected")
     return description_in_text(path, content, kind)
 
 
@@ -133,7 +134,7 @@ def kind_of(path: str, text: bytes) -> str:
         return "python"
     if begin.startswith(b"launch:") or b"\nlaunch:" in text:
         return "yaml"
-    raise LaunchFileError(path, "not a launch file; files in Python, XML and YAML fit")
+    raise LaunchFileError(path, "not a launch file in Python, XML or YAML")
 
 
 def module_in(path: str) -> Any:
@@ -209,7 +210,7 @@ def description_in(module: Any, path: str) -> Any:
     if isinstance(description, StandIn):
         return LaunchDescription([description])
     if not isinstance(description, LaunchDescription):
-        problem = f"{FUNCTION}() returned {description!r}; a LaunchDescription fits"
+        problem = f"{FUNCTION}() returned {description!r}; return a LaunchDescription"
         raise LaunchFileError(path, problem)
     return description
 

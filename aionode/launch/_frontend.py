@@ -173,7 +173,7 @@ def description_of(path: str, root: Element) -> LaunchDescription:
         LaunchFileError: An element is unknown, or has something it must not have.
     """
     if root.name != "launch":
-        raise LaunchFileError(path, f"begins with '{root.name}'; 'launch' fits", line=1)
+        raise LaunchFileError(path, f"begins with '{root.name}'; begin with 'launch'", line=1)
     return LaunchDescription([action_of(child) for child in root.children])
 
 
@@ -202,7 +202,7 @@ def condition_of(reading: Reading) -> Any:
     """Return the condition in ``if`` or ``unless``."""
     holds, fails = reading.raw("if"), reading.raw("unless")
     if holds is not None and fails is not None:
-        raise ValueError(f"'{reading.element.name}' has 'if' and 'unless'; one of them fits")
+        raise ValueError(f"'{reading.element.name}' has 'if' and 'unless'; use one of them")
     if holds is not None:
         return IfCondition(words_of(truth_text(holds)))
     return None if fails is None else UnlessCondition(words_of(truth_text(fails)))

@@ -105,7 +105,7 @@ def element(path: str, name: str, node: yaml.Node, line: int) -> Element:
         for key, value in node.value:
             fill(result, path, str(key.value), value)
     elif node.value:
-        raise LaunchFileError(path, f"'{name}' is {node.value!r}; a mapping fits", line=line)
+        raise LaunchFileError(path, f"'{name}' is {node.value!r}; use a mapping", line=line)
     return result
 
 
@@ -127,6 +127,6 @@ def children(path: str, node: yaml.SequenceNode, name: str) -> Iterator[Element]
     for item in node.value:
         if not isinstance(item, yaml.MappingNode):
             at = item.start_mark.line + 1
-            problem = f"in '{name}', {item.value!r} is not an action; a mapping fits"
+            problem = f"in '{name}', {item.value!r} is not an action; use a mapping"
             raise LaunchFileError(path, problem, line=at)
         yield from elements(path, item)

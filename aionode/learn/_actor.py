@@ -119,8 +119,8 @@ class Actor:
                 raise ContractError(
                     action.topic,
                     "lease_sec",
-                    f"{action.lease_sec:g} s; more than {1.5 / fps:.3f} s fits {fps:g} actions a "
-                    "second, which may be half a period late",
+                    f"{action.lease_sec:g} s; use more than {1.5 / fps:.3f} s for {fps:g} actions "
+                    "a second, which may be half a period late",
                 )
         self._clock = node.get_clock()
         self._period_ns = round(S_TO_NS / fps)
@@ -196,7 +196,7 @@ class Actor:
 
         Raises:
             ValueError: the chunk has another shape, or numbers that are not finite.
-            MessageError: one that is due does not fit its field (a ValueError).
+            MessageError: a number of a due action does not fit its field (a ValueError).
             LeaseExpiredError: the robot was stopped (a TimeoutError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
@@ -214,14 +214,14 @@ class Actor:
         self._refuse_if_stopped()
 
     def send(self, action: npt.ArrayLike) -> None:
-        """Send one action now, replacing what was planned: for a loop with a pace of its own.
+        """Send one action now, replacing what was planned: for loops that set their own pace.
 
         Args:
             action: The numbers of the contract's actions in their order, clamped to the limits.
 
         Raises:
             ValueError: the action has another number of values, or some are not finite.
-            MessageError: one does not fit its field (a ValueError).
+            MessageError: a number does not fit its field (a ValueError).
             LeaseExpiredError: the robot was stopped (a TimeoutError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
@@ -249,8 +249,8 @@ class Actor:
             rows = rows[np.newaxis]
         if rows.ndim != 2 or rows.shape[1] != width or not len(rows):  # rows, columns
             raise ValueError(
-                f"chunk: its shape is {np.shape(chunk)}; a row of {width} numbers for each action "
-                f"fits: {', '.join(self._labels)}"
+                f"chunk: its shape is {np.shape(chunk)}; pass a row of {width} numbers for each "
+                f"action: {', '.join(self._labels)}"
             )
         if not np.isfinite(rows).all():
             row, column = np.argwhere(~np.isfinite(rows))[0]
@@ -389,7 +389,7 @@ class Actor:
             if took_ns > lasts_ns / 2:
                 self._node.get_logger().warning(
                     f"the policy took {took_ns / S_TO_NS:.3f} s to answer with actions for "
-                    f"{lasts_ns / S_TO_NS:.3f} s, more than half of them: actions will be missing"
+                    f"{lasts_ns / S_TO_NS:.3f} s, more than half of that: actions will be missing"
                 )
         self.stats.latency.record(took_ns)
         self._plan_rows(rows, at)

@@ -32,7 +32,7 @@ LONGEST_SEC: Final = 2000.0
 """Maximum seconds of an episode: readers compare times, 32-bit floats, to within 0.1 ms."""
 
 ROUNDING_NS: Final = 1000
-"""How much late a message may be and still count: periods are not whole nanoseconds."""
+"""How late a message may be and still count: periods are not whole nanoseconds."""
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""Compares a running robot with a contract: which topics, at what rate, and how old at an image."""
+"""Compares a running robot with a contract: its topics, their rates, and their ages at an image."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SILENT_NS: Final = 500_000_000
 """How long an observed topic may be silent, beyond its `max_age`."""
 
 FLOOD_HZ: Final = 2000.0
-"""The rate from which a topic counts as a flood, if there are also as many messages per row."""
+"""The rate from which a topic counts as a flood, if it also has `FLOOD_ROWS` messages per row."""
 
 FLOOD_ROWS: Final = 10
 """Messages per row from which a topic may count as a flood."""
@@ -40,7 +40,7 @@ class Checked:
 
     Attributes:
         topics: The numbers of each topic of the contract.
-        text: What is there, as text.
+        text: The topics and lags that were found, as text.
         problems: What does not match, with what to do.
     """
 
@@ -107,9 +107,9 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
         for entry, topic in zip(contract.entries, topics, strict=True)
     )
     if not problems and not len(rows.times) and not is_idle:
-        problems.append("no picture had everything that is fresh enough; see the ages above")
+        problems.append("at no image was everything fresh enough; see the ages above")
     if problems:
-        problems = floods + problems  # which they may have caused
+        problems = floods + problems  # floods may have caused the others
     followed = lags(contract, rows) if rows.starts else {}
     lines += [
         f"{name}: observed {lag * 1e3:.0f} ms after its command" for name, lag in followed.items()
@@ -118,9 +118,9 @@ async def check(node: Node, contract: Contract, duration_sec: float = 3.0) -> Ch
 
 
 def heard_together(contract: Contract, series: list[Series]) -> list[Series]:
-    """Return the messages, with only those references for which all others could be there.
+    """Return the messages, with only those references at which every topic had been heard.
 
-    What arrives late is not missing, but seems to be at both ends of the period.
+    At both ends of the period, messages that arrive late would otherwise seem to be missing.
     """
     heard = [each.times for each in series if len(each.times)]
     if not heard:
@@ -161,7 +161,7 @@ def silence_of(node: Node, contract: Contract, collected: Collected, end_ns: int
     if silent_ns <= contract.max_age(entry) * S_TO_NS + SILENT_NS:
         return []
     name = node.resolve_topic_name(entry.topic)
-    return [f"{name}: silent for the last {silent_ns / S_TO_NS:.1f} s; is its driver at work?"]
+    return [f"{name}: silent for the last {silent_ns / S_TO_NS:.1f} s; is its driver running?"]
 
 
 def endpoints_of(node: Node, name: str, kind: EndpointKind) -> list[EndpointInfo]:
@@ -190,12 +190,12 @@ def problems_of(
     others = {each.type_name for each in publishers} - {entry.type}
     is_silent = not topic["messages"] and not topic["invalid"]
     if others:
-        return [f"{name}: it is {', '.join(sorted(others))}, and {entry.type} in the contract"]
+        return [f"{name}: it is {', '.join(sorted(others))}, but {entry.type} in the contract"]
     if entry in contract.actions and is_silent:
         robot = endpoints_of(node, name, EndpointKind.SUBSCRIPTION)
         types = {each.type_name for each in robot}
         if types and entry.type not in types:
-            return [f"{name}: the robot takes {', '.join(sorted(types))}, and not {entry.type}"]
+            return [f"{name}: the robot expects {', '.join(sorted(types))}, not {entry.type}"]
         if types or publishers:
             return []  # nobody is demonstrating at the moment
     if not publishers:
@@ -204,5 +204,5 @@ def problems_of(
         remedy = f"did you mean {near[0]}?" if near else "start its driver"
         return [f"{name}: nobody publishes it; {remedy}"]
     if is_silent:
-        return [f"{name}: published, but nothing arrived; is its driver at work?"]
+        return [f"{name}: published, but nothing arrived; is its driver running?"]
     return []

@@ -339,8 +339,8 @@ def merged_indexes(
 def check_dataset(out: str | os.PathLike[str]) -> list[str]:
     """Read a data set back, and return what would break LeRobot's reader; empty if nothing does.
 
-    It checks more than that reader: that a video has exactly as many frames as its episode has
-    rows, as otherwise all later images would belong to other rows.
+    Unlike that reader, it checks that a video has exactly as many frames as its episode has rows;
+    otherwise all later images would belong to other rows.
     """
     out = Path(out)
     try:
@@ -400,7 +400,7 @@ def check_columns(info: dict[str, Any], rows: pa.Table) -> Iterator[str]:
         yield f"data: no column {name}"
     for field in rows.schema:
         if field.type != wanted.get(field.name):
-            yield f"data: the column {field.name} is {field.type}, and not {wanted.get(field.name)}"
+            yield f"data: the column {field.name} is {field.type}, not {wanted.get(field.name)}"
         elif rows[field.name].null_count:
             yield f"data: the column {field.name} has missing values"
 

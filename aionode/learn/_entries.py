@@ -60,11 +60,11 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         fields: The path of each number in the message, such as ``position.shoulder``.
         names: The name of each number; by default, the paths.
         unit: The unit of the numbers, such as ``rad``, for human readers.
-        max_age: The age in seconds up to which a message counts; by default, 1.5 periods.
+        max_age: The maximum age of a message in seconds; by default, 1.5 periods.
         resample: Whether a number between two messages is interpolated, or is that of the
             earlier one; by default, floating-point numbers of observations are interpolated.
-        stamp: The time of a message: that in its header, or that of its arrival; by default, the
-            header's if there is one.
+        stamp: Which time a message has: ``capture``, that in its header, or ``receive``, that of
+            its arrival; by default, the header's if there is one.
     """
 
     feature: str
@@ -81,7 +81,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Check the entry, and fill in defaults."""
         if not FEATURE.fullmatch(self.feature) or self.feature in OWN:
             raise ValueError(
-                f"feature: {self.feature!r}; letters, digits, _, - and dots fit, as in "
+                f"feature: {self.feature!r}; use letters, digits, _, - and dots, as in "
                 "observation.state"
             )
         try:
@@ -89,23 +89,23 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         except InvalidTopicNameException as error:
             raise ValueError(f"topic: {error}") from None
         if not (math.isfinite(self.max_age) and self.max_age >= 0):
-            raise ValueError(f"max_age: {self.max_age:g}; a number of seconds fits")
+            raise ValueError(f"max_age: {self.max_age:g}; use a number of seconds")
         if not issubclass(self.message_type, Message):
-            raise ValueError(f"type: {self.type} is no message")  # noqa: TRY004  # of a file
+            raise ValueError(f"type: {self.type} is not a message type")  # noqa: TRY004  # of a file
         self.check_fields()
         if self.names and len(self.names) != len(self.paths):
             raise ValueError(f"names: {len(self.names)} names for {len(self.paths)} numbers")
         if len(set(self.labels)) != len(self.labels):
             raise ValueError("names: a name is given twice; each number needs its own")
         if self.stamp == "capture" and not self.has_header:
-            raise ValueError(f"stamp: {self.type} has no header with a time; receive fits")
+            raise ValueError(f"stamp: {self.type} has no header with a time; use receive")
 
     def check_fields(self) -> None:
         """Raise ValueError for a path that the message does not have."""
         if not self.fields:
-            raise ValueError(f"fields: none; paths in {self.type} fit, such as {self.example}")
+            raise ValueError(f"fields: none; give paths in {self.type}, such as {self.example}")
         if len(self.fields) > MOST_NUMBERS:
-            raise ValueError(f"fields: {len(self.fields)}; at most {MOST_NUMBERS} fit")
+            raise ValueError(f"fields: {len(self.fields)} given; use at most {MOST_NUMBERS}")
         cls = self.message_type
         for path in self.paths:
             try:
@@ -162,7 +162,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """
         numbers = np.array([number_at(message, path) for path in self.paths], np.float64)
         self.replace_infinities(numbers)
-        with np.errstate(over="ignore"):  # what float32 cannot hold is not finite
+        with np.errstate(over="ignore"):  # numbers too large for float32 become infinite
             found = numbers.astype(np.float32)
         if not np.isfinite(found).all():
             place = int(np.flatnonzero(~np.isfinite(found))[0])
@@ -170,7 +170,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return found
 
     def replace_infinities(self, numbers: npt.NDArray[np.float64]) -> None:
-        """Put finite numbers in place of infinite ones that mean something."""
+        """Replace infinite numbers that have a meaning; the base class knows none."""
 
     def time_of(self, message: Any, received: int) -> int:
         """Return the time of a message in nanoseconds, from its header or of its arrival.
@@ -190,8 +190,9 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         image: ``color``, ``mono`` or ``depth`` if messages are images; None for numbers.
         height: The height of the images in pixels.
         width: Their width.
-        infinity: The number that stands for infinity, as in a scan for a beam without a return; by
-            default, a message with one is refused. Such numbers are not interpolated by default.
+        infinity: The number that replaces positive infinity, such as that of a scan's beam without
+            a return; by default, a message with infinities is refused. Entries with this number are
+            not interpolated by default.
     """
 
     image: Literal["color", "mono", "depth"] | None = None
@@ -203,24 +204,24 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise ValueError for a path that the message lacks, or an image without a size."""
         if self.image is None:
             if self.type in IMAGES:
-                raise ValueError("image: none; color, mono or depth fits for pictures")
+                raise ValueError("image: none; use color, mono or depth for images")
             super().check_fields()
             if self.infinity is not None and not abs(self.infinity) <= float(
                 np.finfo(np.float32).max
             ):
-                raise ValueError(f"infinity: {self.infinity:g}; a finite number fits")
+                raise ValueError(f"infinity: {self.infinity:g}; use a finite number")
         elif self.infinity is not None:
             raise ValueError("infinity: images have none; leave it out")
         elif self.type not in IMAGES:
-            raise ValueError(f"image: {self.type} is no picture; {' or '.join(IMAGES)} fits")
+            raise ValueError(f"image: {self.type} is not an image; use {' or '.join(IMAGES)}")
         elif self.fields or self.names:
             raise ValueError("fields: images have none; leave them out")
         elif self.resample == "interpolate":
-            raise ValueError("resample: pictures are not interpolated; hold fits")
+            raise ValueError("resample: images are not interpolated; use hold")
         elif not (0 < self.height <= 16_384 and 0 < self.width <= 16_384):
             raise ValueError(
-                f"height: {self.height} by width {self.width}; the pixels of the pictures fit, "
-                "such as 480 by 640"
+                f"height: {self.height} by width {self.width}; give the size of the images in "
+                "pixels, such as 480 by 640"
             )
 
     @property
@@ -231,7 +232,7 @@ class Observation(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
     def replace_infinities(self, numbers: npt.NDArray[np.float64]) -> None:
-        """Put `infinity` in place of infinite numbers, if the contract has it."""
+        """Put `infinity` in place of positive infinity, if the contract has it."""
         if self.infinity is not None:
             numbers[numbers == math.inf] = self.infinity
 
@@ -293,7 +294,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if not np.all(self.limits[0] <= self.limits[1]):
             raise ValueError("lower: greater than upper, or not a number")
         if not (math.isfinite(self.lease_sec) and self.lease_sec > 0):
-            raise ValueError(f"lease_sec: {self.lease_sec:g}; a number of seconds fits")
+            raise ValueError(f"lease_sec: {self.lease_sec:g}; use a number of seconds")
         for name, make in (("template", self.zero), ("stop", self.stop_message)):
             try:
                 make()
@@ -330,7 +331,7 @@ class Action(Entry, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise ContractError(
                 self.topic,
                 self.feature,
-                f"{escaped(str(given)[:200])}; {len(self.paths)} finite numbers fit: "
+                f"{escaped(str(given)[:200])}; use {len(self.paths)} finite numbers: "
                 f"{', '.join(self.labels[:20])}",
             )
         inside = np.clip(given, *self.limits)
@@ -397,7 +398,7 @@ def pixels_of(message: Any, kind: str) -> Array:
     if kind != "depth":
         return pixels
     if pixels.ndim != 2 or pixels.dtype.kind not in "uf":
-        problem = f"{message.encoding!r}; 16UC1 and 32FC1 fit for depths"
+        problem = f"{message.encoding!r}; use 16UC1 or 32FC1 for depths"
         raise MessageError("sensor_msgs/msg/Image.encoding", problem)
     scale = np.float32(0.001 if pixels.dtype.kind == "u" else 1.0)
     return pixels.astype(np.float32) * scale

@@ -149,7 +149,7 @@ class Camera:
         entry: The observation.
         wanted: The ordinal of the message for each row of an episode, with that episode.
         files: The video of each episode.
-        stats: The statistics of each.
+        stats: The statistics of each video.
         unreadable: The ordinals of images that could not be read.
         problem: What was wrong with the first of these.
     """
@@ -166,7 +166,7 @@ class Camera:
         self.count = 0
         """The number of messages of the topic that the reader has seen."""
         self.next = deque(ordinal for ordinal, _ in wanted)
-        """What the reader still has to pass on."""
+        """The ordinals that the reader still has to pass on."""
 
     def passes(self, record: Record, encoding: Future[None]) -> None:
         """Pass a message on to the encoder if it is in a row."""

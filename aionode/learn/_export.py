@@ -88,9 +88,9 @@ def export(
 ) -> Exported:
     """Convert episodes to a data set of LeRobot, format v3.0.
 
-    Each image of the contract's reference is a row, and everything else is as of its time. An
-    export that was interrupted resumes with the missing episodes if it is called again
-    with the same arguments.
+    Each message of the contract's reference topic makes a row, as `aionode.learn.contract`
+    describes. An export that was interrupted resumes with the missing episodes if it is called
+    again with the same arguments.
 
     Args:
         out: The folder of the data set.
@@ -106,8 +106,8 @@ def export(
     Raises:
         BagError: one of them is not a bag, or is being recorded (a ValueError).
         ContractError: a contract is not valid (a ValueError).
-        DatasetError: the folder has a data set or other files, no contract fits, no bag has a row,
-            or the data set cannot be read back (a ValueError).
+        DatasetError: the folder has a data set or other files, the bags do not share a contract, no
+            bag has a row, or the data set cannot be read back (a ValueError).
     """
     place = Path(out)
     check_place(place)
@@ -119,7 +119,7 @@ def export(
     if not wanted:
         left_out = f"{counted(len(paths), 'episode')}, and only failures"
         problem = left_out if paths else "no bag is given"
-        raise DatasetError(str(out), problem, "--failures takes them" if paths else "")
+        raise DatasetError(str(out), problem, "--failures includes them" if paths else "")
     paths = wanted
     found = contract or common_contract(paths)
     check_sizes(found)
@@ -157,7 +157,7 @@ def complete(
     codec: str,
     reports: list[dict[str, Any]],
 ) -> None:
-    """Put a data set together and read it back; its parts are no longer needed then.
+    """Put a data set together and read it back; then remove its parts.
 
     Raises:
         DatasetError: it cannot be read back (a ValueError).
@@ -182,7 +182,7 @@ def check_place(place: Path) -> None:
     if (place / PARTS).is_dir() or not place.is_dir():
         return
     if (place / INFO).exists():
-        raise DatasetError(str(place), "it is there already", "give another name, or remove it")
+        raise DatasetError(str(place), "it exists already", "give another name, or remove it")
     if any(place.iterdir()):
         raise DatasetError(str(place), "the folder has other files", "give the name of a new one")
 
@@ -220,7 +220,7 @@ def is_bag(folder: Path) -> bool:
 
 
 def repair(path: Path) -> int:
-    """Close the bag of a recorder that was killed; all but its last second is there.
+    """Close the bag of a recorder that was killed, which lacks at most the last second.
 
     Returns:
         The bytes that could not be saved.
@@ -256,7 +256,7 @@ def common_contract(bags: Sequence[Path]) -> Contract:
         if found is not None and each != found:
             raise DatasetError(
                 str(path),
-                f"it was recorded with another contract than {bags[0]}",
+                f"it was recorded with a different contract from {bags[0]}",
                 "give the one to use with --contract",
             )
         found = each
@@ -275,7 +275,7 @@ def check_sizes(contract: Contract) -> None:
         if each.image and each.image != "depth" and (each.height % 2 or each.width % 2):
             raise DatasetError(
                 each.topic,
-                f"pictures of {each.width} by {each.height} pixels",
+                f"images of {each.width} by {each.height} pixels",
                 "videos have an even number of rows and columns: crop them",
             )
 
@@ -318,12 +318,12 @@ def done(
     for job in planned:
         part = read_part(job)
         if part is None:
-            raise DatasetError(job.folder, "it was removed while it was written")
+            raise DatasetError(job.folder, "it was removed while it was being written")
         yield part
 
 
 def read_part(job: Job) -> dict[str, Any] | None:
-    """Return a part that is complete."""
+    """Return a part, or None if it is not complete."""
     try:
         part: dict[str, Any] = json.loads(Path(job.folder, PART).read_text())
     except (OSError, ValueError):
@@ -371,7 +371,7 @@ def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None])
                 missing[0].folder,
                 "a process of the export ended early: it was killed, as for lack of memory, or the "
                 "program that calls export() does so without `if __name__ == '__main__':`",
-                "start it again with one job at a time; what is done stays",
+                "start it again with one job at a time; what is done is kept",
             ) from error
         finally:
             pool.shutdown(cancel_futures=True)

@@ -22,7 +22,7 @@ def check_path(cls: Any, path: str) -> FieldType:
     """Return the type of the numbers at a path of a message class.
 
     Raises:
-        ValueError: there cannot be any.
+        ValueError: messages of the class have no number at this path.
     """
     here: type[Message] | None = cls
     array: FieldType | None = None
@@ -30,7 +30,9 @@ def check_path(cls: Any, path: str) -> FieldType:
         if array is not None:
             type_, array = array.element, None
             if not part.isascii() or not (part.isdigit() or has_names(cls)):
-                raise ValueError(f"{part!r} is no index, and {type_name(cls)} names no elements")
+                raise ValueError(
+                    f"{part!r} is not an index, and {type_name(cls)} does not name elements"
+                )
         else:
             known = {each.name: each.type for each in fields(here)} if here else {}
             if part not in known:
@@ -47,7 +49,7 @@ def check_path(cls: Any, path: str) -> FieldType:
             + (f" or {path}.NAME" if has_names(cls) else "")
         )
     if type_.kind not in DTYPES:
-        raise ValueError(f"it is {type_}, and no number")
+        raise ValueError(f"it is {type_}, not a number")
     return type_
 
 
@@ -89,14 +91,14 @@ def index_of(message: Message, part: str, length: int, path: str) -> int:
     if part.isdigit():
         index = int(part)
         if index >= length:
-            lacks(message, path, f"{length} elements only")
+            lacks(message, path, f"only {length} elements")
         return index
     field = name_field(type(message))
     names: list[str] = getattr(message, field) if field else []
     if part not in names:
         lacks(message, path, f"the names are {', '.join(names[:20]) or 'none'}")
     if names.count(part) > 1:
-        lacks(message, path, f"{part} is there {names.count(part)} times among the names")
+        lacks(message, path, f"{part} occurs {names.count(part)} times among the names")
     index = names.index(part)
     if index >= length:
         lacks(message, path, f"{length} elements for {len(names)} names")

@@ -20,7 +20,7 @@ Call = tuple[Future[Any], "Callable[[], Any]"]
 
 
 class InferenceThread(Executor):
-    """One daemon thread, so that a policy that hangs does not keep block or program from ending.
+    """One daemon thread, so that a policy that hangs keeps neither block nor program from ending.
 
     It is always the same thread, as some libraries with a device require.
     """

@@ -7,13 +7,13 @@ from typing import Final
 __all__ = ["CONTRACT_KEY", "FAILURE", "OUTCOME_KEY", "TASK_KEY"]
 
 TASK_KEY: Final = "task"
-"""What was demonstrated, in words."""
+"""The key of the task: what was demonstrated, in words."""
 
 CONTRACT_KEY: Final = "contract"
-"""The contract, as JSON."""
+"""The key of the contract, as JSON."""
 
 OUTCOME_KEY: Final = "outcome"
-"""How it ended: ``success`` or ``failure``; missing if its recorder was killed."""
+"""The key of the outcome, ``success`` or ``failure``; missing if the recorder was killed."""
 
 FAILURE: Final = "failure"
-"""The outcome with which an export leaves an episode out."""
+"""The outcome of episodes that an export leaves out."""

@@ -28,7 +28,7 @@ START_SEC: Final = 5.0
 """How long each topic may take until its first message."""
 
 KEPT_NS: Final = 1_000_000_000
-"""How much earlier than the reference the messages of its time may arrive."""
+"""How much earlier than a reference message other messages of its time may arrive."""
 
 KEPT: Final = 2_000
 """Maximum messages kept of a topic."""
@@ -40,8 +40,8 @@ NEXT: Final = 0.75
 class History:
     """The newest messages of one topic, in the order of their times and arrivals.
 
-    Times that contradict others are left out as by an export, so a policy sees what it was trained
-    on: a time in the future is there until the next message shows that it is false.
+    Messages whose times contradict others are left out as by an export, so a policy sees what it
+    was trained on; one with a time in the future is kept until the next message contradicts it.
     """
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class History:
 
     def add(self, time_ns: int, arrival_ns: int, message: Any) -> None:
         """Keep a message, and forget those that no reference will ask for."""
-        if self.arrivals and arrival_ns < self.arrivals[-1]:  # a simulation that begins again
+        if self.arrivals and arrival_ns < self.arrivals[-1]:  # a simulation has restarted
             self._keep([])
         self.times.append(time_ns)
         self.arrivals.append(arrival_ns)
@@ -111,8 +111,8 @@ class Seen:
 class Observations:
     """Observations of a running robot. Created by `Contract.observe`, for ``async with``.
 
-    It subscribes to the observed topics while the block is open, best effort, which fits every
-    publisher.
+    It subscribes to the observed topics while the block is open, with best-effort reliability,
+    which is compatible with every publisher.
     """
 
     def __init__(
@@ -205,7 +205,8 @@ class Observations:
             StaleError: it is silent for too long.
         """
         times, arrivals = self._reference.times, self._reference.arrivals
-        # A last reference after the newest one had a time in the future, and is gone.
+        # If the last reference is later than the newest one, its time was in the future, and it
+        # has been left out since.
         while not times or (
             self._last_ns is not None and self._last_ns <= times[-1] < self._last_ns + apart_ns
         ):
@@ -256,7 +257,7 @@ class Observations:
         return self._clock.now_ns() - self._reference.times[-1]
 
     def _limit_ns(self) -> int:
-        """Return the age that it may reach before the next one arrives."""
+        """Return the age that the newest message of the reference may reach."""
         return round((self._limits[self._topic] + 1 / self._fps) * S_TO_NS)
 
     def _stale(self, ages_ns: dict[str, int | None]) -> StaleError:

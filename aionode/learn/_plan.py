@@ -140,7 +140,7 @@ class ActionPlan:
     def take(self, now_ns: int) -> Planned | None:
         """Remove and return the action to be sent now; None if there is none.
 
-        If several are due, as after the loop was blocked, it is the last one.
+        If several are due, as after the loop was blocked, the last one is returned.
         """
         due = bisect_right(self._planned, now_ns, key=_time)
         if due == 0:

@@ -294,15 +294,15 @@ class Episodes:
         Raises:
             EpisodeError: it cannot be created or written to (a RuntimeError).
         """
-        problem = "a file has this name" if self.folder.is_file() else ""
+        problem = "a file has its name" if self.folder.is_file() else ""
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             problem = problem or error.strerror or str(error)
         if not problem and not os.access(self.folder, os.W_OK | os.X_OK):
-            problem = "it cannot be written"
+            problem = "it is not writable"
         if problem:
-            raise EpisodeError(f"no folder {self.folder}: {problem}; give another one")
+            raise EpisodeError(f"cannot use the folder {self.folder}: {problem}; give another one")
 
     def _next_path(self) -> Path:
         """Return the folder of the next episode."""

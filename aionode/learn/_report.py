@@ -135,7 +135,7 @@ def spread(values: Array) -> dict[str, float] | None:
 
 
 def lags(contract: Contract, rows: Aligned) -> dict[str, float]:
-    """Return by name how long an observation takes to follow its action, where that is clear."""
+    """Return how long each observation takes to follow its action, where that is clear, by name."""
     numbers = [each for each in contract.features.values() if each.kind == "numbers"]
     entries = contract.entries
     columns: tuple[dict[str, Array], dict[str, Array]] = ({}, {})
@@ -163,7 +163,7 @@ def longest_of(rows: Aligned) -> tuple[int, int]:
 def lag_of(commanded: Array, observed: Array, fps: int) -> float | None:
     """Return the seconds by which an observation follows its command; None if unclear.
 
-    Either the observation or its derivative may be what is commanded: a position for a speed.
+    A command may set the observed value itself, or its derivative: a speed for a position.
     """
     best: tuple[float, float | None] = (CLEAR, None)
     for followed in (observed[:-1], np.diff(observed)):
@@ -188,7 +188,7 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
     elif is_short:
         found.append(
             f"{dropped:.1%} of the rows between the first and the last are missing; "
-            f"{limits.dropped:.1%} fits"
+            f"at most {limits.dropped:.1%} may be"
         )
     if report["rows"] > 1 and abs(report["rate_hz"] / fps - 1) > limits.rate:
         found.append(
@@ -205,7 +205,7 @@ def over(report: dict[str, Any], limits: Limits, fps: int) -> list[str]:
                 ("invalid", f"not as in the contract: {topic['problem']}"),
                 ("backwards", "with a time out of order, left out"),
                 ("lost", "lost by the recorder"),
-                ("gone", "recorded, and no longer in the bag: its file was cut, or is missing"),
+                ("gone", "recorded, but no longer in the bag: its file is truncated or missing"),
             )
             if topic[kind]
         ]
@@ -221,7 +221,7 @@ def stamp_problems(topic: dict[str, Any]) -> list[str]:
     offset = topic["offset_sec"]
     if topic["unstamped"]:
         remedy = (
-            "their arrivals are taken, as with stamp: receive"
+            "their times of arrival are used, as with stamp: receive"
             if offset is None
             else "they are left out"
         )
@@ -231,12 +231,12 @@ def stamp_problems(topic: dict[str, Any]) -> list[str]:
         )
     if offset is not None and abs(offset["p50"]) > OTHER_CLOCK:
         found.append(
-            f"{name}: stamped {shifted(offset['p50'])}, by another clock; stamp: receive fits"
+            f"{name}: stamped {shifted(offset['p50'])}, by another clock; use stamp: receive"
         )
     elif topic["ahead"]:
         found.append(
             f"{name}: {counted(topic['ahead'], 'message')} stamped up to "
-            f"{shifted(-topic['ahead_sec'])}, by a clock that is ahead; stamp: receive fits"
+            f"{shifted(-topic['ahead_sec'])}, by a clock that is ahead; use stamp: receive"
         )
     return found
 
@@ -321,7 +321,7 @@ def text_of(report: dict[str, Any], limits: Limits, fps: int) -> str:
 def topic_text(topic: dict[str, Any], rows: int) -> str:
     """Return one line about a topic."""
     if not topic["messages"]:
-        there = f"{counted(topic['invalid'], 'message')}, none of which fits"
+        there = f"{counted(topic['invalid'], 'message')}, none of them as in the contract"
         return (
             f"{topic['topic']} ({topic['feature']}): {there if topic['invalid'] else 'no messages'}"
         )

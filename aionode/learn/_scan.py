@@ -1,4 +1,4 @@
-"""Reads what a contract needs from a bag: all numbers, but of images only their times."""
+"""Reads what a contract needs from a bag: all numbers, but only the times of images."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["UNREADABLE", "Collected", "full_name", "records_of", "scanned"]
 
 UNREADABLE: Final = (DecodeError, InterfaceNotFoundError, MessageError)
-"""What reading a message that does not fit the contract raises."""
+"""The exceptions that are raised by reading a message that does not match the contract."""
 
 STAMPS: Final = (struct.Struct(">iI"), struct.Struct("<iI"))
 """The format of the time at the start of a message, by the lowest bit of its second byte."""
@@ -43,8 +43,8 @@ class Collected:
     Attributes:
         entry: The entry of the contract.
         is_image: Whether its messages are images.
-        is_captured: Whether their time is that in their header.
-        info: The topic in the bag of the last message, which the entry can read.
+        is_captured: Whether their times are those in their headers.
+        info: The topic of the last message that the entry could read, as in the bag.
         times: Their times in nanoseconds, by header or arrival.
         arrivals: When they arrived.
         ordinals: Their positions among all messages of their topic.
@@ -80,7 +80,7 @@ class Collected:
             if not self.is_image:
                 self.values.frombytes(self.entry.value(record.message).tobytes())
             elif not self.times:
-                self.entry.value(record.message)  # raises if it is not such an image
+                self.entry.value(record.message)  # raises if it does not match the contract
         except UNREADABLE as error:
             self.invalid += 1
             self.problem = self.problem or str(error)
@@ -97,15 +97,15 @@ class Collected:
         if not self.is_image:
             return self.entry.time_of(record.message, 0)
         if len(record.raw) < FIRST_FIELD + 8:
-            raise MessageError(self.entry.type, f"{len(record.raw)} bytes only")
+            raise MessageError(self.entry.type, f"only {len(record.raw)} bytes")
         sec, nanosec = STAMPS[record.raw[1] & 1].unpack_from(record.raw, FIRST_FIELD)
         return int(sec) * 1_000_000_000 + int(nanosec)
 
     def series(self) -> Series:
         """Return the messages taken, in the order of their times.
 
-        A message without a time in its header is left out, unless none of the topic has one: then
-        the times of arrival are used.
+        A message without a time in its header is left out, unless no message of the topic has one:
+        then the times of arrival are used.
         """
         columns = 0 if self.is_image else self.entry.shape[0]
         found = Series(
@@ -126,7 +126,7 @@ class Collected:
 
 
 def check_type(info: TopicInfo, entry: Observation | Action) -> None:
-    """Raise an error if an entry cannot read a topic, of which a bag may have several.
+    """Raise an error if an entry cannot read a topic; a bag may have several of the same name.
 
     Raises:
         InterfaceNotFoundError: neither aionode nor the bag has a definition of its type.
@@ -137,7 +137,7 @@ def check_type(info: TopicInfo, entry: Observation | Action) -> None:
     cls = info.msg_type
     if cls is entry.message_type:
         return
-    problem = "pictures of another definition cannot be read"
+    problem = "images with a different definition cannot be read"
     try:
         if not getattr(entry, "image", None):
             for path in (*entry.paths, *STAMP_PATHS * entry.is_captured):
@@ -146,7 +146,7 @@ def check_type(info: TopicInfo, entry: Observation | Action) -> None:
             return
     except ValueError as error:
         problem = f"{problem}: {error}"
-    raise MessageError(entry.type, f"its definition in the bag is another one: {problem}")
+    raise MessageError(entry.type, f"its definition in the bag is different: {problem}")
 
 
 def scanned(
@@ -175,12 +175,12 @@ def absence_of(opened: Bag, name: str) -> str:
     """Return the text for a topic missing from a bag, with a topic of a similar name if any."""
     there = sorted(each for each, count in opened.counts.items() if count)
     near = difflib.get_close_matches(name, there, 1)
-    remedy = f"did you mean {near[0]}?" if near else "was its driver at work?"
+    remedy = f"did you mean {near[0]}?" if near else "was its driver running?"
     return f"{name}: no messages in the bag; {remedy}"
 
 
 def full_name(topic: str) -> str:
-    """Return the name of a contract's topic in bags, which are of robots without a namespace."""
+    """Return the name of a contract's topic in a bag, assuming a robot without a namespace."""
     return f"/{topic.removeprefix('/')}"
 
 

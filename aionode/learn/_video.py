@@ -152,7 +152,7 @@ class PixelStats:
     def statistics(self) -> dict[str, list[Any]]:
         """Return the statistics by name, one value for each channel, in the range 0 to 1.
 
-        Those of depths are in metres.
+        Statistics of depths are in metres.
         """
         if self.is_depth:
             low, high = math.log(DEPTH_MIN + DEPTH_SHIFT), math.log(DEPTH_MAX + DEPTH_SHIFT)

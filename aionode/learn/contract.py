@@ -32,8 +32,9 @@
         stop: zero
 
 Observations of one feature are concatenated, so that arm and gripper may have topics of
-their own; the same holds for actions. Each image of the reference makes a row: everything else is
-as of its time, and an action as of one period later, as it answers the image.
+their own; the same holds for actions. Each message of the reference topic makes a row, or every
+second one of a camera at twice the rate: observations are taken as of its time, and actions as of
+one period later, since they answer that observation.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ class Feature:
         kind: ``numbers``, ``color``, ``mono`` or ``depth``.
         shape: The shape of a value.
         labels: The name of each number; empty for images.
-        entries: The observations or actions of which it consists, in order.
+        entries: The observations or actions that it consists of, in order.
     """
 
     name: str
@@ -101,8 +102,8 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             observation, or else of the first observation.
         task: What the robot is to do, in words; may be empty and be given for each recording.
         robot: The type of the robot, such as ``so101``, for human readers.
-        gap: What a gap of more than 1.5 periods between rows does: ``end`` ends the episode, and
-            what follows is another one; ``refuse`` refuses the episode.
+        gap: How to treat a gap of more than 1.5 periods between rows: ``end`` ends the episode
+            there and starts another one; ``refuse`` refuses the recording.
     """
 
     observations: tuple[Observation, ...]
@@ -116,16 +117,16 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     def __post_init__(self) -> None:
         """Check rules that concern several entries."""
         if not 1 <= self.fps <= 1000:
-            raise ValueError(f"fps: {self.fps}; 1 to 1000 fits")
+            raise ValueError(f"fps: {self.fps}; use 1 to 1000")
         for name, given in (("observations", self.observations), ("actions", self.actions)):
             if not 1 <= len(given) <= MOST_ENTRIES:
-                raise ValueError(f"{name}: {len(given)}; 1 to {MOST_ENTRIES} fit")
+                raise ValueError(f"{name}: {len(given)} given; use 1 to {MOST_ENTRIES}")
         topics = [each.topic for each in self.observations]
         if self.reference and self.reference not in topics:
             near = "".join(difflib.get_close_matches(self.reference, topics, 1))
             raise ValueError(
                 f"reference: {self.reference!r} is not the topic of an observation"
-                + (f"; did you mean {near}?" if near else f"; {', '.join(topics)} fit")
+                + (f"; did you mean {near}?" if near else f"; use one of {', '.join(topics)}")
             )
         for name in {each.feature for each in self.entries}:
             self.check_feature([each for each in self.entries if each.feature == name])
@@ -136,14 +137,14 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         if len({type(each) for each in entries}) > 1:
             raise ValueError(f"{name}: both an observation and an action; each needs its own name")
         if len(entries) > 1 and any(getattr(each, "image", None) for each in entries):
-            raise ValueError(f"{name}: two entries; a feature with a picture has one")
+            raise ValueError(f"{name}: several entries; an image feature has a single one")
         labels = [label for each in entries for label in each.labels]
         if len(set(labels)) != len(labels):
-            raise ValueError(f"{name}: two numbers of one name; give each its own in names")
+            raise ValueError(f"{name}: numbers with the same name; give each its own in names")
         if len({(each.topic, each.type) for each in self.entries}) > len(
             {each.topic for each in self.entries}
         ):
-            raise ValueError(f"{name}: its topic has another type in another entry")
+            raise ValueError(f"{name}: its topic has a different type in another entry")
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Contract:
@@ -175,7 +176,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             path: The name that errors use.
 
         Raises:
-            ContractError: they are not a contract (a ValueError).
+            ContractError: the values are not a contract (a ValueError).
         """
         return contract_from(given, path or "given", None)
 
@@ -184,7 +185,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         given: dict[str, Any] = listed(msgspec.to_builtins(self))
         for entry in (*given["observations"], *given["actions"]):
             for key, value in list(entry.items()):
-                # Of a limit, or of what stands for infinity, 0 is no default.
+                # For `lower`, `upper` and `infinity`, 0 is not the default.
                 if value in ((), [], "", None, {}) or (
                     value == 0 and key in ("height", "width", "max_age")
                 ):
@@ -211,7 +212,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     @property
     def main(self) -> Observation:
-        """The observation that makes the rows."""
+        """The observation whose messages make the rows."""
         wanted = [each for each in self.observations if each.topic == self.reference]
         images = [each for each in self.observations if each.image]
         return (wanted or images or list(self.observations))[0]
@@ -225,7 +226,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         return {name: feature_of(entries) for name, entries in found.items()}
 
     def max_age(self, entry: Observation | Action) -> float:
-        """Return the age in seconds up to which a message of an entry counts."""
+        """Return the maximum age of a message of an entry, in seconds."""
         return entry.max_age or 1.5 * self.period
 
     def observe(self, node: Node) -> Observations:
@@ -312,7 +313,7 @@ def refuse(path: str, node: Any, place: str, problem: str) -> NoReturn:
     if unknown is not None:
         near = difflib.get_close_matches(unknown[1][:100], keys_at(parts), 1)
         problem = "no such key; " + (
-            f"did you mean {near[0]}?" if near else f"{', '.join(keys_at(parts))} fit"
+            f"did you mean {near[0]}?" if near else f"use one of {', '.join(keys_at(parts))}"
         )
         parts.append(unknown[1])
     elif key is not None and key[1] in keys_at(parts):
@@ -327,7 +328,7 @@ def refuse(path: str, node: Any, place: str, problem: str) -> NoReturn:
 
 
 def keys_at(parts: list[str | int]) -> tuple[str, ...]:
-    """Return the keys that fit at a place."""
+    """Return the keys that are allowed at a place."""
     names = {"observations": Observation, "actions": Action}
     cls = names.get(str(parts[0]), Contract) if len(parts) > 1 else Contract
     return tuple(cls.__struct_fields__)
@@ -362,7 +363,7 @@ def nodes_along(node: Any, parts: list[str | int]) -> Iterator[Any]:
 
 
 def check_keys(path: str, node: Any) -> None:
-    """Raise an error for a key that a mapping has twice, of which YAML would take the last."""
+    """Raise an error for a key that a mapping has twice; YAML would keep only the last value."""
     if isinstance(node, yaml.MappingNode):
         seen: set[str] = set()
         for key, value in node.value:

@@ -77,7 +77,9 @@ def how_to_start(
         plan = Plan(os.fspath(description), arguments)
         return lambda system: plan_running(plan, system)
     if arguments is not None:
-        raise TypeError(f"system_under_test: {description} is no launch file; it has no arguments")
+        raise TypeError(
+            f"system_under_test: {description} is not a launch file and takes no arguments"
+        )
     main = description if callable(description) else main_of(Path(description))
     return lambda system: started_by(main, system)
 

@@ -123,7 +123,7 @@ def test_services_and_actions_have_parts() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "column", "problem"),
     [
-        ("int32", 1, 6, "the name is missing; 'int32 some_name' would fit"),
+        ("int32", 1, 6, "the name is missing; write 'int32 some_name'"),
         ("int33 x", 1, 1, "'int33' is not a type; did you mean int32?"),
         ("\n  Int32[ x", 2, 8, "'[' does not belong to a type"),
         ("9 x", 1, 1, "'9' is not a type; a line begins with a type"),

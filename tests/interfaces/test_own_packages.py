@@ -209,7 +209,7 @@ async def test_a_class_of_rclpy_is_refused_with_the_line_to_write(node: Node) ->
     """Both classes have the same name, and the import looks like ROS's."""
     theirs: Any = type("GoTo", (), {"__module__": "robot_interfaces.action._go_to"})
 
-    with pytest.raises(TypeError, match=f"nodes of aionode take `{LINE}`"):
+    with pytest.raises(TypeError, match=f"use aionode's own: `{LINE}`"):
         node.create_action_client(theirs, "go_to")
 
 

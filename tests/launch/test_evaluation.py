@@ -393,7 +393,7 @@ BAD = {
     "import launch.nothing": (1, "launch is from aionode here, which does not have launch.nothin"),
     "def generate_launch_description(:": (1, "not valid Python"),
     "x = 1": (None, "has neither generate_launch_description() nor"),
-    "def generate_launch_description():\n    return 5": (None, "a LaunchDescription fits"),
+    "def generate_launch_description():\n    return 5": (None, "return a LaunchDescription"),
     "from launch.actions import LogInfo\nLogInfo()": (
         2,
         "missing 1 required keyword-only argument",

@@ -117,11 +117,11 @@ BAD_XML = {
     '<launch><node exec="$(vr x)"/></launch>': (1, "'$(vr …)' is not a substitution"),
     '<launch><node exec="$(var x"/></launch>': (1, "')' is missing"),
     '<launch><node exec="a"><param name="b"/></node></launch>': (1, "'param' needs 'value'"),
-    '<launch><node exec="a" if="1" unless="1"/></launch>': (1, "one of them fits"),
+    '<launch><node exec="a" if="1" unless="1"/></launch>': (1, "use one of them"),
     '<launch>\n<executable cmd="$(for-var x)"/></launch>': (2, "no enclosing loop has 'x'"),
     '<launch>\n<for len="0" name="i"><nod/></for></launch>': (2, "'nod' is not an action"),
     "<launch>\n</lunch>": (2, "not valid XML: mismatched tag"),
-    "<robot/>": (1, "begins with 'robot'; 'launch' fits"),
+    "<robot/>": (1, "begins with 'robot'; begin with 'launch'"),
     '<!DOCTYPE launch [<!ENTITY a "b">]><launch/>': (1, "a document type (<!DOCTYPE>)"),
 }
 
@@ -208,7 +208,7 @@ def test_a_pipe_is_no_launch_file(name: str, tmp_path: Path) -> None:
     """Nobody may ever write to it."""
     os.mkfifo(tmp_path / name)
 
-    with pytest.raises(LaunchFileError, match="cannot be read: a pipe or a device, and no file"):
+    with pytest.raises(LaunchFileError, match="cannot be read: a pipe or a device, not a file"):
         Plan(str(tmp_path / name))
 
 

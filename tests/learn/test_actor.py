@@ -356,7 +356,9 @@ async def test_limits_clamp_and_are_counted(robot: Robot) -> None:
 async def test_a_chunk_of_another_shape_is_refused(robot: Robot) -> None:
     """And says what fits."""
     async with contract_of().act(robot.node) as actor:
-        with pytest.raises(ValueError, match=r"shape is \(1, 2\); a row of 1 numbers .*angular.z"):
+        with pytest.raises(
+            ValueError, match=r"shape is \(1, 2\); pass a row of 1 numbers .*angular.z"
+        ):
             actor.plan([[1.0, 2.0]], robot.clock.now())
 
 
@@ -481,7 +483,7 @@ async def test_a_lease_that_is_shorter_than_the_time_between_actions_is_refused(
     robot: Robot,
 ) -> None:
     """It would end between two of them."""
-    with pytest.raises(ContractError, match=r"lease_sec: 0.04 s; more than 0.050 s fits"):
+    with pytest.raises(ContractError, match=r"lease_sec: 0.04 s; use more than 0.050 s"):
         contract_of(lease_sec=0.04).act(robot.node)
 
 

@@ -85,25 +85,25 @@ def test_a_contract_survives_its_plain_values(tmp_path: Path) -> None:
     [
         ("max_age: 0.05", "max_aeg: 0.05", "line 10: observations[0].max_aeg: no such key; did"),
         ("max_age: 0.05", "max_age: old", "line 10: observations[0].max_age: Expected `float`"),
-        ("max_age: 0.05", "max_age: .nan", "line 10: observations[0].max_age: nan; a number"),
+        ("max_age: 0.05", "max_age: .nan", "line 10: observations[0].max_age: nan; use a number"),
         ("fps: 30", "fps: 30\nfps: 20", "line 3: fps: there twice"),
-        ("fps: 30", "fps: 0", "line 2: fps: 0; 1 to 1000 fits"),
+        ("fps: 30", "fps: 0", "line 2: fps: 0; use 1 to 1000"),
         ("fps: 30", "fps: 30\nreference: /camera/image", "did you mean /camera/image_raw?"),
         ("fps: 30", "fbs: 30", "line 2: fbs: no such key; did you mean fps?"),
         ("JointState", "JointStat", "line 13: observations[1].type: "),
         ("msg/JointState", "srv/SetCameraInfo", "line 13: observations[1].type: "),
         ("position.elbow", "positon.elbow", "line 14: observations[1].fields: 'positon.elbow': no"),
         ("position.elbow", "position", "it is an array, float64[]; name one element"),
-        ("position.elbow", "header.frame_id", "it is string, and no number"),
+        ("position.elbow", "header.frame_id", "it is string, not a number"),
         ("[shoulder, elbow]", "[shoulder]", "observations[1].names: 1 names for 2 numbers"),
-        ("image: color", "", "observations[0].image: none; color, mono or depth fits"),
+        ("image: color", "", "observations[0].image: none; use color, mono or depth"),
         ("image: color", "image: colour", "observations[0].image: Invalid enum value 'colour'"),
         ("stop: zero", "stop: {dota: [0]}", "actions[0].stop: "),
         ("    stop: zero\n", "", "actions[0]: Object missing required field `stop`"),
         ("upper: [1, 2]", "upper: -2", "actions[0].lower: greater than upper"),
         ("upper: [1, 2]", "upper: [1]", "actions[0].upper: 1 limits for 2 numbers"),
-        ("feature: action", "feature: a/b", "actions[0].feature: 'a/b'; letters"),
-        ("data.1", "data.one", "'one' is no index"),
+        ("feature: action", "feature: a/b", "actions[0].feature: 'a/b'; use letters"),
+        ("data.1", "data.one", "'one' is not an index"),
         ("task: pick the cube", "[", "not YAML"),
     ],
 )
@@ -228,7 +228,7 @@ def test_a_number_beyond_32_bits_is_not_infinity() -> None:
 @pytest.mark.parametrize("infinity", [math.inf, math.nan, 1e300])
 def test_what_stands_for_infinity_is_finite(infinity: float) -> None:
     """In 32 bits."""
-    with pytest.raises(ValueError, match=r"infinity: .*; a finite number fits"):
+    with pytest.raises(ValueError, match=r"infinity: .*; use a finite number"):
         Observation(**SCAN, infinity=infinity)
 
 
@@ -251,7 +251,7 @@ def test_actions_are_clamped_and_counted(tmp_path: Path) -> None:
 @pytest.mark.parametrize("values", [[float("nan"), 0.0], [1.0], [[1.0, 2.0]]])
 def test_actions_that_are_no_numbers_are_refused(tmp_path: Path, values: Any) -> None:
     """A policy that diverged."""
-    with pytest.raises(ContractError, match=r"2 finite numbers fit: data.0, data.1"):
+    with pytest.raises(ContractError, match=r"use 2 finite numbers: data.0, data.1"):
         loaded(tmp_path).actions[0].message(np.array(values))
 
 

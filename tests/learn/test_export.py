@@ -191,7 +191,7 @@ def test_a_bag_that_was_cut_after_its_recording_says_what_is_missing(
     for attempt in range(times):
         found = export(tmp_path / f"out{attempt}", [path], contract=contract(), jobs=1)
         assert 30 < found.rows < 150
-        assert re.search(r"! /camera0: \d+ messages recorded, and no longer in the bag", found.text)
+        assert re.search(r"! /camera0: \d+ messages recorded, but no longer in the bag", found.text)
         assert found.problems
 
 
@@ -323,7 +323,7 @@ def test_a_data_set_is_not_overwritten(tmp_path: Path) -> None:
     """It may be the only one."""
     bag = demonstration(tmp_path / "run", length_sec=0.5)
     dataset(tmp_path, bag)
-    with pytest.raises(DatasetError, match="it is there already; give another name"):
+    with pytest.raises(DatasetError, match="it exists already; give another name"):
         dataset(tmp_path, bag)
 
 
@@ -464,7 +464,7 @@ def test_a_bag_of_another_contract_is_refused(tmp_path: Path) -> None:
         demonstration(tmp_path / "a", length_sec=0.5, recorded_with=contract()),
         demonstration(tmp_path / "b", length_sec=0.5, recorded_with=contract(fps=15)),
     ]
-    with pytest.raises(DatasetError, match="recorded with another contract"):
+    with pytest.raises(DatasetError, match="recorded with a different contract"):
         export(tmp_path / "out", bags)
 
 

@@ -167,7 +167,7 @@ CASES = {
         "/joint_states",
         joints(name=["joint", "joint"], position=[1.0, 2.0], velocity=[1.0, 2.0]),
         SOME,
-        "position.joint: not there: joint is there 2 times among the names",
+        "position.joint: not there: joint occurs 2 times among the names",
     ),
     "a joint that is no number": Case(
         "/joint_states",
@@ -270,7 +270,9 @@ def test_a_topic_without_times_is_of_its_arrivals_and_told(tmp_path: Path) -> No
     """A driver that fills no header; the contract can say so."""
     edit = false("/joint_states", lambda each: at(header=type(each.header)())(each), ALL)
     found = exported(tmp_path, edit)
-    told = "/joint_states: 99 messages without a time in the header; their arrivals are taken"
+    told = (
+        "/joint_states: 99 messages without a time in the header; their times of arrival are used"
+    )
     assert told in found.text
     assert "stamped" not in found.reports[0]["topics"][1]
     observations = contract().to_dict()["observations"]

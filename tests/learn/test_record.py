@@ -130,7 +130,9 @@ async def test_an_error_in_the_block_is_a_failure_which_an_export_leaves_out(
     assert metadata(tmp_path / "runs/episode_0001")["outcome"] == "failure"
     assert export(tmp_path / "out", [tmp_path / "runs"], jobs=1).episodes == 1
     assert export(tmp_path / "all", [tmp_path / "runs"], jobs=1, failures=True).episodes == 2
-    with pytest.raises(DatasetError, match="1 episode, and only failures; --failures takes them"):
+    with pytest.raises(
+        DatasetError, match="1 episode, and only failures; --failures includes them"
+    ):
         export(tmp_path / "none", [tmp_path / "runs/episode_0001"])
 
 
@@ -289,7 +291,7 @@ async def test_an_unusable_folder_is_reported_before_anything_is_recorded(
     """Whoever demonstrates has prepared the robot, and would notice it at the first key."""
     (tmp_path / "file").touch()
     async with local_context() as context:
-        with pytest.raises(EpisodeError, match=rf"no folder \S+{given}: .*; give another one"):
+        with pytest.raises(EpisodeError, match=rf"the folder \S+{given}: .*; give another one"):
             async with Episodes(tmp_path / given, contract(), context=context):
                 pass
 
@@ -408,7 +410,7 @@ async def test_a_check_names_another_type_and_a_joint_that_is_not_there() -> Non
     assert (
         "/joint_states: 30 messages: sensor_msgs/msg/JointState.position.elbow: not there" in text
     )
-    assert "/command: it is sensor_msgs/msg/JointState, and std_msgs/msg/Float64 in the" in text
+    assert "/command: it is sensor_msgs/msg/JointState, but std_msgs/msg/Float64 in the" in text
 
 
 async def test_a_check_names_a_camera_of_another_rate() -> None:
@@ -423,7 +425,10 @@ async def test_a_check_names_numbers_that_are_not_there_and_not_that_they_are_ol
     observations[1]["fields"] = ["position.elbow", "velocity.joint"]
     found = await checked(stamped(observations=observations))
     assert len(found.problems) == 1
-    assert "/joint_states (observation.state): 30 messages, none of which fits" in found.text
+    assert (
+        "/joint_states (observation.state): 30 messages, none of them as in the contract"
+        in found.text
+    )
 
 
 async def test_a_check_does_not_take_what_is_slow_to_arrive_for_missing() -> None:
@@ -457,8 +462,8 @@ async def test_a_check_names_what_fell_silent() -> None:
     """A robot that froze or was killed meanwhile has good rates up to then."""
     found = await checked(stamped(), length_sec=3.0)
     assert found.problems == [
-        "/camera0: silent for the last 3.0 s; is its driver at work?",
-        "/joint_states: silent for the last 3.0 s; is its driver at work?",
+        "/camera0: silent for the last 3.0 s; is its driver running?",
+        "/joint_states: silent for the last 3.0 s; is its driver running?",
     ]
 
 

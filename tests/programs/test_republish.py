@@ -91,7 +91,7 @@ async def test_colours_are_no_depths(
     (seen,) = await viewer.show(Image, "in", picture())
 
     assert seen.encoding == "bgr8"
-    assert "bgr8 is no depth; 16UC1, mono16 and 32FC1 fit" in capsys.readouterr().err
+    assert "bgr8 is not for depths; use 16UC1, mono16 or 32FC1" in capsys.readouterr().err
 
 
 async def test_compressed_images_become_raw_ones(start: Start, viewer: Viewer) -> None:
@@ -179,8 +179,8 @@ async def test_a_rule_may_name_the_topic_or_its_base(
     ("name", "value", "text"),
     [
         ("in_transport", "theora", "in_transport is 'theora', which is not available here"),
-        ("out.compressed.format", "tiff", "'tiff'; jpeg and png fit"),
-        ("out.compressedDepth.format", "rvl", "'rvl'; png fits"),
+        ("out.compressed.format", "tiff", "'tiff'; use jpeg or png"),
+        ("out.compressedDepth.format", "rvl", "'rvl'; use png"),
     ],
 )
 async def test_what_there_is_not_is_refused(start: Start, name: str, value: str, text: str) -> None:

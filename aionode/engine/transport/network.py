@@ -278,7 +278,7 @@ def choose_range(
     try:
         return DiscoveryRange[text.upper()]
     except KeyError:
-        fits = "one of " + ", ".join(r.value for r in DiscoveryRange) + " fits"
+        fits = "use one of " + ", ".join(r.value for r in DiscoveryRange)
         raise ConfigurationError(source, text, fits) from None
 
 

@@ -96,7 +96,7 @@ class Simulator(Node):
     def obey(self, command: Twist) -> None:
         """Drive as commanded, limited to what the motors can do; a NaN or infinity stops them."""
         if not (math.isfinite(command.linear.x) and math.isfinite(command.angular.z)):
-            self.get_logger().warning(f"stopped: a command is no number: {command}")
+            self.get_logger().warning(f"stopped: a command is not a finite number: {command}")
             self.stop()
             return
         self.speed = min(MAX_SPEED, max(-MAX_SPEED, command.linear.x))

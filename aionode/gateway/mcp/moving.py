@@ -216,9 +216,8 @@ def check_seconds(seconds: float, most: float, limit: str) -> None:
     if seconds > most:
         raise RefusedError(
             "seconds",
-            f"{seconds:g} s, at most {most:g} s are allowed by {limit} of "
-            "the policy; move in several "
-            "steps, and look in between",
+            f"{seconds:g} s, at most {most:g} s are allowed by {limit} of the policy; move in "
+            "several steps, and look in between",
             "out_of_limits",
         )
 

@@ -134,13 +134,13 @@ class Republisher(Node):
             self.declare_parameter(name, usual, ParameterDescriptor(integer_range=[limits]))
         self.format = self.declare_parameter(FORMAT, "jpeg").value
         if self.format not in FORMATS:
-            raise CommandError(f"{FORMAT} is {self.format!r}; {' and '.join(FORMATS)} fit")
+            raise CommandError(f"{FORMAT} is {self.format!r}; use {' or '.join(FORMATS)}")
 
     def declare_depth(self) -> None:
         """Declare how depths are compressed."""
         format_ = self.declare_parameter(f"{DEPTH}format", "png").value
         if format_ != "png":
-            raise CommandError(f"{DEPTH}format is {format_!r}; png fits; RVL is read only")
+            raise CommandError(f"{DEPTH}format is {format_!r}; use png; RVL can only be read")
         for name, usual, most in (("depth_max", 10.0, 100.0), ("depth_quantization", 100.0, 150.0)):
             metres = FloatingPointRange(from_value=1.0, to_value=most)
             described = ParameterDescriptor(floating_point_range=[metres])

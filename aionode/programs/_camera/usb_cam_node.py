@@ -58,7 +58,7 @@ class UsbCam(Camera):
         if skips_check:
             self.get_logger().warning("Skipping V4L2 device availability check by request.")
         if self.pixel_format not in FORMATS:
-            raise CommandError(f"pixel_format is {self.pixel_format!r}; {', '.join(FORMATS)} fit")
+            raise CommandError(f"pixel_format is {self.pixel_format!r}; use {', '.join(FORMATS)}")
         if min(self.size) < 1 or not 0 < self.rate < math.inf:
             raise CommandError(
                 f"the camera should have {self.size} pixels at {self.rate} Hz; use numbers above 0"

@@ -43,7 +43,7 @@ class V4L2Camera(Camera):
         if pixels not in PIXELS or encoding not in ENCODINGS:
             raise CommandError(
                 f"pixel_format is {pixels!r} and output_encoding {encoding!r}; "
-                f"{', '.join(PIXELS)} fit, and {', '.join(ENCODINGS)}"
+                f"use {' or '.join(PIXELS)}, and {' or '.join(ENCODINGS)}"
             )
         self.pixel_format = self.format_of(PIXELS[pixels], encoding)
         size = list(self.declare_parameter("image_size", [640, 480]).value)

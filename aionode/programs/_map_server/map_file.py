@@ -70,7 +70,7 @@ class MapFile:
         except (OSError, yaml.YAMLError, ValueError) as error:
             raise MapYamlError(f"{path}: {error}") from None
         if not isinstance(content, dict):
-            raise MapYamlError(f"{path}: it is no mapping with the keys of a map")
+            raise MapYamlError(f"{path}: it is not a mapping with the keys of a map")
 
         def given(key: str, fits: Any, what: str, default: Any = None) -> Any:
             value = content.get(key, default)

@@ -401,7 +401,7 @@ def test_short_waits_are_not_reported(
 
     (line,) = caplog.messages
     assert ": 6 since the last such line, 700 ms in all; the load is 0.5 on" in line
-    assert "more than these can do" not in line
+    assert "more than they can run" not in line
 
 
 def test_a_callback_that_somebody_debugs_is_not_reported() -> None:

@@ -102,7 +102,7 @@ def test_localhost_only_overrules_the_variables_that_replaced_it(
         ({"ROS_DOMAIN_ID": "4294967296"}, "ROS_DOMAIN_ID: '4294967296' given"),
         (
             {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"},
-            "ROS_AUTOMATIC_DISCOVERY_RANGE: 'WORLD' given; one of OFF, LOCALHOST, SUBNET",
+            "ROS_AUTOMATIC_DISCOVERY_RANGE: 'WORLD' given; use one of OFF, LOCALHOST, SUBNET",
         ),
         ({"ROS_STATIC_PEERS": "a;b:c"}, "ROS_STATIC_PEERS: 'c' given; use a TCP port"),
         ({"ROS_STATIC_PEERS": "a b"}, "ROS_STATIC_PEERS: 'a b' given; use a host, host:port or"),

@@ -22,7 +22,7 @@ def is_mended(defect: str) -> bool:
     """
     unmended = set(os.environ.get(VARIABLE, "").replace(",", " ").split())
     for name in unmended and unmended - defects():
-        raise ConfigurationError(VARIABLE, name, f"{', '.join(sorted(defects()))} fit")
+        raise ConfigurationError(VARIABLE, name, f"use {', '.join(sorted(defects()))}")
     return defect not in unmended
 
 
