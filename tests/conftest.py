@@ -41,7 +41,7 @@ settings.register_profile(
     max_examples=10,
 )
 settings.load_profile("tests")
-# `.ci/run` and `make stress` use "thorough", with more examples of each property; `make fuzz`
+# `make stress` uses "thorough", with more examples of each property; `make fuzz`
 # uses "fuzz". Tests with a number of examples of their own use a fraction of the profile's.
 settings.register_profile("thorough", settings.get_profile("tests"), max_examples=100)
 settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)

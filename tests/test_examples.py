@@ -559,6 +559,7 @@ def test_the_wheels_stop_when_their_driver_is_killed_and_obey_an_emergency_stop(
     assert status == 0, text
 
 
+@pytest.mark.slow
 def test_a_robot_of_four_processes_shows_its_table_and_ctrl_c_leaves_nothing(
     domain: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

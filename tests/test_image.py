@@ -402,6 +402,7 @@ def test_rvl_takes_no_more_memory_than_its_picture_needs(side: int) -> None:
         tracemalloc.stop()
 
 
+@pytest.mark.slow
 def test_many_short_runs_of_rvl_take_no_more_memory_than_their_picture() -> None:
     """Hostile data have one for every pixel, and a number for every nibble."""
     runs = bytes.fromhex("1110") * (1 << 17)  # no depth, depth, its difference; then depth alone

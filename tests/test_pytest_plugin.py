@@ -181,6 +181,7 @@ async def test_it(replay_bag, golden_bag):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_outputs_are_compared_with_a_golden_bag_beside_the_test(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch

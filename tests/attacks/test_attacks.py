@@ -41,6 +41,7 @@ def results() -> dict[str, Found | BaseException]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("name", SHORT)
 def test_an_attack_is_held(name: str) -> None:

@@ -36,6 +36,7 @@ def numbers(path: Path) -> list[int]:
         return [each.message.data for each in run.read("/numbers")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.stress)])
 def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
     step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

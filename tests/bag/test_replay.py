@@ -268,6 +268,7 @@ async def test_outputs_can_be_saved_and_read(numbers: Path, tmp_path: Path) -> N
         assert Outputs(saved.read()).digest() == outputs.digest()
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_another_process_with_other_hashes_publishes_the_same(numbers: Path) -> None:
     """The order of sets and the addresses of objects differ between processes."""

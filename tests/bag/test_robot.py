@@ -54,6 +54,7 @@ async def test_a_changed_constant_is_found_and_named(tmp_path: Path) -> None:
     assert bag.compare(other, tmp_path / "golden", tolerance={"/cmd_vel": 0.01}) == []
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_each_process_publishes_the_same(tmp_path: Path) -> None:
     """The hashes of strings and the addresses of objects differ between processes."""

@@ -42,6 +42,7 @@ def env(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
     return {**os.environ, **isolated}
 
 
+@pytest.mark.slow
 def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
     """The first answer has to be complete; once it contained 0 to 2 of them."""
     node = NodeInfo("8b20917502ee955ac4476e0266340d5c", 0, "many", "/")

@@ -171,6 +171,7 @@ async def deploy(workspace: Path, *options: str, python: str) -> tuple[int, str]
     return process.returncode, output.decode()
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 @pytest.mark.timeout(180)  # a virtual environment and a wheel are made
@@ -206,6 +207,7 @@ async def test_a_workspace_is_installed_and_its_unit_started(host: Host, workspa
     assert host.calls()[-1] == "systemctl restart my_robot.service"
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(180)  # four wheels are made
 async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: Path) -> None:
     """While files are copied or installed; the same command then completes the release."""

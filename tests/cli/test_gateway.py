@@ -35,6 +35,7 @@ async def test_it_serves_until_it_is_stopped(
     assert answer.status_code == 404
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_its_node_describes_types_that_only_it_has() -> None:
     """Others see topics and services of rosbridge and rosapi, and have no package for these."""

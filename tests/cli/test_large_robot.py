@@ -124,6 +124,7 @@ def robot(environment: None) -> Iterator[Robot]:
             yield robot
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 async def test_lists_beside_a_large_robot_are_complete(robot: Robot, screen: Any) -> None:
     """At the first attempt, although the graph changes a hundred times a second meanwhile."""
@@ -143,6 +144,7 @@ async def test_lists_beside_a_large_robot_are_complete(robot: Robot, screen: Any
     assert all(record["publishers"] == record["subscriptions"] == 1 for record in topics)
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 async def test_one_topic_of_a_large_robot_is_shown_with_its_rate(
     robot: Robot, screen: Any, monkeypatch: pytest.MonkeyPatch

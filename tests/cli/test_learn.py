@@ -20,6 +20,7 @@ from tests.support.peers import isolated_environment
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_export_says_what_became_of_the_messages(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -147,6 +148,7 @@ def test_ctrl_c_closes_the_bag_of_an_episode_that_has_not_ended(in_terminal: Rec
     assert bag.check(file.parent) == [(file.name, False, 0, 0)]
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_a_full_disk_ends_the_command_while_an_episode_is_recorded(in_terminal: Recording) -> None:
     """At once, in one line, and not when hours of demonstrations are ended."""

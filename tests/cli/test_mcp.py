@@ -130,6 +130,7 @@ def test_a_wrong_option_says_what_fits(
     assert shown.out == ""
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
@@ -145,6 +146,7 @@ async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
     assert not answered.is_error
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 @pytest.mark.timeout(180)

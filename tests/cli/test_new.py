@@ -26,6 +26,7 @@ def package(
     return tmp_path / "my_robot"
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_a_new_package_passes_its_test(package: Path) -> None:
     """Its message is found without a build, and its node runs on a recording."""
@@ -41,6 +42,7 @@ def test_a_new_package_passes_its_test(package: Path) -> None:
     assert "1 passed" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_a_new_package_is_launched(package: Path) -> None:
     """With its parameters, and until Ctrl-C."""

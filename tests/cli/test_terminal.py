@@ -405,6 +405,7 @@ def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
     assert "0 problem(s)" in text  # a busy machine is worth a hint
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not available(), reason="links are of Linux")
 def test_the_doctor_shows_the_route_of_a_pair(terminals: Terminals) -> None:
     """As seen from a process without links."""
@@ -422,6 +423,7 @@ def test_the_doctor_shows_the_route_of_a_pair(terminals: Terminals) -> None:
     assert "Pairs of linked processes: 0\n\n" in alone.stdout
 
 
+@pytest.mark.slow
 def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
     """The most common reason why no node is found, with a remedy that can be typed."""
     done = terminals.run("doctor", ROS_DOMAIN_ID="41")

@@ -94,6 +94,7 @@ async def test_the_live_view_needs_a_terminal(robot: Node) -> None:
         await top(robot, output=Output())
 
 
+@pytest.mark.slow
 async def test_the_live_view_shows_filters_and_sorts(robot: Node) -> None:
     """Driven by keys, as by a person."""
     app = TopApp(robot, interval=1000.0)
@@ -113,6 +114,7 @@ async def test_the_live_view_shows_filters_and_sorts(robot: Node) -> None:
         assert app.query_one("#processes-table").row_count == 1  # type: ignore[attr-defined]  # as above
 
 
+@pytest.mark.slow
 async def test_the_log_is_subscribed_to_when_it_is_looked_at(robot: Node) -> None:
     """Nothing else is subscribed to at all."""
     app = TopApp(robot, interval=1000.0)
@@ -139,6 +141,7 @@ async def test_ctrl_c_ends_the_view(tool: Node, before: list[str]) -> None:
     assert not app.is_running
 
 
+@pytest.mark.slow
 async def test_what_nodes_say_of_themselves_is_a_table(robot: Node) -> None:
     """It is subscribed to when it is looked at; the worst is first."""
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -160,6 +163,7 @@ async def test_what_nodes_say_of_themselves_is_a_table(robot: Node) -> None:
         assert [str(each) for each in table.get_row_at(0)[:3]] == ["bad", "2 error", "no device"]
 
 
+@pytest.mark.slow
 async def test_a_field_is_plotted_over_time(robot: Node) -> None:
     """Of the topic under the cursor; the same key ends it, and its subscription."""
     app = TopApp(robot, interval=1000.0)
@@ -185,6 +189,7 @@ async def test_a_field_is_plotted_over_time(robot: Node) -> None:
     assert len(list(robot.subscriptions)) == before
 
 
+@pytest.mark.slow
 async def test_a_parameter_and_a_state_are_changed_in_place() -> None:
     """The answer of the node is shown, also if it refuses."""
     context = local_context()

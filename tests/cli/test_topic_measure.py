@@ -47,6 +47,7 @@ async def test_hz_prints_the_rate_once_a_second(
     )
 
 
+@pytest.mark.slow
 async def test_hz_is_right_at_ten_kilohertz(
     running: Any,
     tool: Node,

@@ -67,6 +67,7 @@ async def test_a_chart_of_each_field_is_printed_at_the_end(
     assert "/level.data: 0.5" in second
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("wheels")
 async def test_it_ends_after_a_duration_with_a_picture(
     running: Any, tool: Node, manual_clock: ManualClock, screen: Any, tmp_path: Path

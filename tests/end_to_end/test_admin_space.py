@@ -51,6 +51,7 @@ def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
         yield stack.enter_context(router_client(port)), overheard
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
 def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two nodes with or without a link, commands of a user, and the doctor.

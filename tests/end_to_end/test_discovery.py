@@ -110,6 +110,7 @@ def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
         two.expect("sum 5")
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 async def test_a_stopped_process_leaves_the_graph_of_those_that_do_not_look_at_it(
     monkeypatch: pytest.MonkeyPatch,

@@ -192,6 +192,7 @@ def fetched(port: int, path: str, body: dict[str, Any] | None = None) -> str:
     return text
 
 
+@pytest.mark.slow
 def test_a_first_afternoon_with_a_robot_has_no_stumble(terminal: Terminal) -> None:
     """A newcomer's steps in order; each has failed for someone in an earlier version."""
     (port,) = free_ports(1)

@@ -92,6 +92,7 @@ def freeze_reader(
         assert took_s < ENDS_S
 
 
+@pytest.mark.slow
 def test_a_frozen_reader_stops_no_loop_and_loses_nothing() -> None:
     """A BLOCK put held the queue towards it, and with it every thread, including the loop's."""
     freeze_reader(2.0)
@@ -105,6 +106,7 @@ def test_a_reader_may_be_frozen_for_longer_than_the_lease(freeze_s: float) -> No
     freeze_reader(freeze_s, limit_ms=ALONE_MS)
 
 
+@pytest.mark.slow
 def test_a_frozen_reader_that_acknowledges_nothing_stops_no_loop() -> None:
     """Like a ROS 2 node: a thread waits for it as long as its connection lasts."""
     freeze_reader(2.0, role="plain")
@@ -124,6 +126,7 @@ def test_a_publisher_ends_at_once_beside_a_frozen_reader_and_says_what_is_lost(r
         assert any("of the messages published here were dropped" in line for line in keeper.rest())
 
 
+@pytest.mark.slow
 def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
     """Its network thread used to wait with it, and then the connection was lost."""
     with members(("reader", "big", 15_000), ("keeper", "big", 15_000, 500)) as (reader, keeper):
@@ -169,6 +172,7 @@ def test_what_a_publisher_has_sent_before_it_ends_arrives(messages: int, size: i
         assert quitter.wait() == 0
 
 
+@pytest.mark.slow
 def test_a_client_goes_on_beside_a_frozen_server(monkeypatch: pytest.MonkeyPatch) -> None:
     """A request waited on the loop until the server took it, so that no timeout could help."""
     monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", SMALL_BUFFERS)
@@ -191,6 +195,7 @@ def test_a_client_goes_on_beside_a_frozen_server(monkeypatch: pytest.MonkeyPatch
         assert took_s < ENDS_S
 
 
+@pytest.mark.slow
 def test_a_server_goes_on_beside_a_frozen_client(monkeypatch: pytest.MonkeyPatch) -> None:
     """A reply waited on the loop until the client took it, and all other clients with it."""
     monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", SMALL_BUFFERS)

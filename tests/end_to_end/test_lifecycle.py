@@ -151,6 +151,7 @@ async def output_of_peer(*arguments: str) -> str:
     return text
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 @pytest.mark.timeout(120)
 async def test_a_program_of_another_kind_manages_nodes() -> None:
@@ -164,6 +165,7 @@ async def test_a_program_of_another_kind_manages_nodes() -> None:
         stage.replaced.set()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 async def test_no_transition_is_lost_or_stuck_while_topics_flow() -> None:
     """Hundreds of requests from another process, between the messages of a busy topic."""

@@ -47,6 +47,7 @@ def output_of(system: str, *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 @both_systems
 def test_every_module_is_imported(system: str) -> None:
     """Even those that are not used there, such as those of links."""
@@ -59,6 +60,7 @@ def test_two_nodes_of_one_process_talk(system: str) -> None:
     assert output_of(system, MEMBER, "both").splitlines() == ["heard hello"] * 3 + ["answer True"]
 
 
+@pytest.mark.slow
 @one_system
 def test_two_processes_and_the_command_line_talk_over_zenoh(system: str) -> None:
     """There are no links there, without any setting, and Ctrl-C ends a program as everywhere."""

@@ -109,6 +109,7 @@ def server(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Server]:
     server.process.stdout.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("server", SERVERS, indirect=True)
 def test_the_first_signal_ends_motion_whatever_is_open(server: Server) -> None:
     """A server waits for its routes and streams, while the robot must not drive on."""

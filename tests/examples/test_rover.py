@@ -287,6 +287,7 @@ def ended(program: subprocess.Popen[str]) -> int:
     return program.returncode
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(60)
 def test_the_rover_has_a_page() -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+import pytest
 
 from aionode import Node
 from aionode.examples.rover.learn import CONTRACT, demonstrate, drive, fitted
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from aionode.testing import ManualClock
 
 T = TypeVar("T")
+
+pytestmark = pytest.mark.slow
 
 
 async def passing(clock: ManualClock, work: Coroutine[object, object, T]) -> T:

@@ -35,6 +35,7 @@ def results() -> dict[str, Outcome | BaseException]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("case", SHORT.values(), ids=SHORT)
 def test_a_fault_breaks_no_promise(case: Case) -> None:

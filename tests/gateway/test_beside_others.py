@@ -133,6 +133,7 @@ async def test_a_client_that_has_to_leave_is_told_why() -> None:
             await (await client.ping())
 
 
+@pytest.mark.slow
 async def test_a_client_that_leaves_public_data_unread_keeps_nobody_out() -> None:
     """A stranger needs no token for the page, so it could open any number of connections."""
     async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:

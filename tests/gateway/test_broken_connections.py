@@ -424,6 +424,7 @@ async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_no
         writer.transport.abort()
 
 
+@pytest.mark.slow
 async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
     """It sends requests repeatedly: the waiting answers are limited in size and time."""
     limits = "client_lost_sec = 0.3\nframes_per_sec = 1e6"

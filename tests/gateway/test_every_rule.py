@@ -494,6 +494,7 @@ async def table_of(context: Context, way: str) -> AsyncIterator[Table]:
         yield table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 async def test_every_rule_lets_pass_and_refuses(
     context: Context, way: str, monkeypatch: pytest.MonkeyPatch

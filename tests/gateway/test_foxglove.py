@@ -169,6 +169,7 @@ async def test_a_topic_is_a_channel_with_its_definition(node: Node) -> None:
         assert gone["channelIds"] == [channel["id"]]
 
 
+@pytest.mark.slow
 async def test_a_large_system_is_announced_in_few_frames(node: Node) -> None:
     """More frames than may wait for a client would disconnect it, and it may want all channels."""
     for number in range(1100):

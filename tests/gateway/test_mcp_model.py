@@ -39,6 +39,7 @@ SCRIPT: Final = f"{shlex.quote(sys.executable)} -m tests.support.scripted_model 
 MODEL: Final = os.environ.get("AIONODE_MODEL_CLIENT", "")
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 @pytest.mark.timeout(600)

@@ -260,6 +260,7 @@ async def test_an_endless_answer_is_cut(assisted: Bench, era: str) -> None:
     assert len(result.model_dump_json()) < 20_000
 
 
+@pytest.mark.slow
 async def test_twenty_clients_at_once_are_served(assisted: Bench, era: str) -> None:
     """Each call has a session of its own."""
     clients = [await assisted.connect(era) for _ in range(20)]

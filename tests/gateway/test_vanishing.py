@@ -23,6 +23,7 @@ async def test_the_stop_is_sent_when_a_client_is_killed_or_frozen(how: signal.Si
     assert len(await stops_after(how)) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])

@@ -180,6 +180,7 @@ def test_nothing_is_written_if_a_definition_is_wrong(packages: Path, out: Path) 
     assert list(out.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SOURCE.is_dir(), reason="ROS 2's definitions are not beside the repository")
 def test_the_shipped_modules_are_what_the_generator_writes(tmp_path: Path) -> None:
     """They are not edited by hand, except for docstrings."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import new_class
 from typing import ClassVar
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -37,6 +38,7 @@ def parts(cls: type[Interface]) -> list[type[Message]]:
     return [getattr(cls, half) for half in halves if hasattr(cls, half)]
 
 
+@pytest.mark.slow
 def test_the_text_of_every_shipped_type_makes_it_again() -> None:
     """What `aionode interface show` prints can be built."""
     for name in shipped_types():

@@ -142,6 +142,7 @@ print([name for name in loaded if name.count(".") > 2], len(names) > 1000, found
 """
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_the_names_of_types_are_known_before_their_classes_are() -> None:
     """A list of all names, and the completion of one, shall not make a thousand classes."""

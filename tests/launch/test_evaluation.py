@@ -574,6 +574,7 @@ def test_a_file_that_includes_itself_is_an_error(files: Files) -> None:
         files.plan("a.launch.xml", '<launch><include file="$(filename)"/></launch>')
 
 
+@pytest.mark.slow
 def test_files_that_include_others_twice_end(files: Files) -> None:
     """Twenty such files are a million, although none includes itself."""
     last = 18

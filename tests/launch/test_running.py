@@ -584,6 +584,7 @@ def test_the_command_starts_nothing_of_a_bad_file(files: Files) -> None:
     assert not mark.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 def test_the_robot_of_the_examples_starts_and_leaves_nothing() -> None:
     """One command, four processes, a table; Ctrl-C ends it in order."""

@@ -130,6 +130,7 @@ def latest_sec(*given: Course) -> float:
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 @given(
     camera=courses,
@@ -224,6 +225,7 @@ def recorded(camera: Course, other: Course, joint: Course) -> Messages:
     return sorted(found, key=lambda each: each[0])
 
 
+@pytest.mark.slow
 @settings(
     max_examples=15,
     suppress_health_check=[HealthCheck.too_slow],

@@ -346,6 +346,7 @@ def test_a_bag_that_is_given_twice_is_exported_once(tmp_path: Path) -> None:
     assert len(dataset(tmp_path, tmp_path / "runs", bag).episodes) == 1
 
 
+@pytest.mark.slow
 def test_two_exports_do_not_write_one_folder(tmp_path: Path) -> None:
     """The second one would replace files that the first one writes."""
     bag = demonstration(tmp_path / "run", length_sec=0.5)
@@ -398,6 +399,7 @@ def test_the_tasks_are_an_index_of_any_name(tmp_path: Path, index: str | None, f
     ])  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize("place", ["10", "45", "70", "write_dataset", "check_dataset"])
 def test_a_killed_export_resumes(tmp_path: Path, place: str) -> None:
@@ -418,6 +420,7 @@ def test_a_killed_export_resumes(tmp_path: Path, place: str) -> None:
     assert Reader(out).info["features"][CAMERA]["info"]["video.codec"] == "h264"
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
     """With progress that ends at the whole."""
@@ -431,6 +434,7 @@ def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
     assert told[-1][0] <= told[-1][1]
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_a_process_of_an_export_that_was_killed_is_one_sentence(tmp_path: Path) -> None:
     """As for lack of memory: the others' work stays, and one job at a time needs less."""

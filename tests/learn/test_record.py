@@ -325,6 +325,7 @@ PROGRAM = textwrap.dedent("""
 """)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_an_episode_is_exported_once_its_recorder_was_killed(tmp_path: Path) -> None:
     """With its task and contract; nobody said how it ended. It is not touched before."""

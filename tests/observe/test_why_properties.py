@@ -124,6 +124,7 @@ class Program:
             asyncio.get_running_loop().call_soon(self.publish, step.topic, cause)
 
 
+@pytest.mark.slow
 @pytest.mark.hypothesis
 @settings(max_examples=60, deadline=None)
 @given(programs(), st.integers(1, 4))

@@ -55,6 +55,7 @@ def test_keys_that_are_merged_count_as_often_as_they_are_merged() -> None:
         composed_yaml(text)
 
 
+@pytest.mark.slow
 def test_the_variable_raises_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """The metadata of a bag with ten thousand files are long, but no attack."""
     monkeypatch.setenv(VALUES_VARIABLE, "100000")

@@ -105,6 +105,7 @@ def test_the_transport_of_another_package_is_sending() -> None:
     assert not called_in("own_transport_of_none", lambda: is_sending(sys._getframe(1)))
 
 
+@pytest.mark.slow
 async def test_whatever_sends_says_so() -> None:
     """A signal handler that sent within such a step would tear a frame, or lose a message.
 
@@ -113,6 +114,7 @@ async def test_whatever_sends_says_so() -> None:
     assert (await sent_everything()).unmarked == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", ["aionode.endpoints", "aionode.engine.transport"])
 async def test_a_package_that_forgets_to_say_so_is_found(
     package: str, monkeypatch: pytest.MonkeyPatch

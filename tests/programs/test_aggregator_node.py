@@ -331,6 +331,7 @@ analyzers:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop

@@ -288,6 +288,7 @@ async def test_controls_of_the_camera_are_those_of_usb_cam(
     }
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop

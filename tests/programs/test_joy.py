@@ -535,6 +535,7 @@ def driving() -> Iterator[dict[str, Any]]:
 IN_PROCESSES = [pytest.mark.timeout(90), pytest.mark.one_loop]
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize(
     ("who", "number", "told"),

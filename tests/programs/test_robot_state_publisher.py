@@ -227,6 +227,7 @@ def test_what_is_no_description_is_named(urdf: str, text: str) -> None:
         Robot.of(urdf)
 
 
+@pytest.mark.slow
 def test_the_pose_of_each_link_is_that_of_a_matrix_computation() -> None:
     """For 50 random robots of 20 joints, to 1e-12."""
     for seed in range(50):

@@ -226,6 +226,7 @@ def end(keys: Any, how: str) -> None:
         os.kill(keys.pid, signal.SIGKILL if how == "sigkill" else signal.SIGSTOP)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize(
     ("how", "told"),
@@ -265,6 +266,7 @@ def test_the_wheels_stop_within_half_a_second(terminals: Terminals, how: str) ->
     assert passed < 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize("key", [pytest.param(key, marks=IN_TERMINALS) for key in "\x1a\x1c\x13"])
 def test_keys_that_freeze_or_end_programs_stop_the_robot_like_any_other(

@@ -384,6 +384,7 @@ def environment() -> Iterator[dict[str, str]]:
     assert process.returncode in (0, 130)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop
@@ -414,6 +415,7 @@ def test_the_commands_of_the_tutorials_work_word_for_word(environment: dict[str,
     assert "SUCCEEDED" in said
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop

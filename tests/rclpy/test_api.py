@@ -602,6 +602,7 @@ for number in range(5000):
 """
 
 
+@pytest.mark.slow
 def test_a_program_that_ends_without_shutdown_drops_nothing(tmp_path: Path) -> None:
     """A thread passes the messages to Zenoh, and still has many of them when the program ends."""
     program = tmp_path / "ending.py"
@@ -619,6 +620,7 @@ def test_a_program_that_ends_without_shutdown_drops_nothing(tmp_path: Path) -> N
     assert (printed, process.returncode) == ("", 0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("initialised")
 def test_ten_thousand_calls_at_once_leave_nothing_behind() -> None:
     """As in rclpy, only those within the server's depth are answered; the rest are not kept."""

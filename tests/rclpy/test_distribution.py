@@ -78,6 +78,7 @@ def test_its_message_packages_do_one_thing() -> None:
     assert codes == {"from aionode.rclpy._finder import provide\nprovide(__name__)"}
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(180)
 def test_a_wheel_of_its_sdist_has_the_same_files(wheel: Path, tmp_path: Path) -> None:
     """The sdist is built elsewhere, without aionode's repository beside it."""
@@ -90,6 +91,7 @@ def test_a_wheel_of_its_sdist_has_the_same_files(wheel: Path, tmp_path: Path) ->
     assert files_in(built("wheel", source, tmp_path / "again")) == files_in(wheel)
 
 
+@pytest.mark.slow
 def test_a_program_runs_with_its_wheel(wheel: Path, tmp_path: Path) -> None:
     """By ``python program.py``; with `install` as well, each module still exists once."""
     program = tmp_path / "program.py"

@@ -118,6 +118,7 @@ def test_signals_interrupt_the_thread_that_forked_the_child() -> None:
     assert process.stdout.split() == ["0", "True"], process.stderr
 
 
+@pytest.mark.slow
 def test_a_forked_child_is_told_that_it_cannot_use_the_context() -> None:
     """It has neither the sending thread nor sockets of its own; the parent is not disturbed."""
     process = run(PROGRAM)

@@ -43,6 +43,7 @@ def run(name: str) -> dict[str, Any]:
     return said
 
 
+@pytest.mark.slow
 def test_a_handler_publishes_while_the_main_thread_publishes() -> None:
     """The last command of a program that is to end: all of them are numbered and sent."""
     assert run("publishes") == {"handled": True, "stops": True, "commands": 10_000}
@@ -82,6 +83,7 @@ def test_a_handler_that_puts_itself_off_raises_at_any_place() -> None:
     assert run("puts_itself_off") == WELL
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("does", ["publishes", "asks"])
 def test_a_finalizer_communicates_at_any_place(does: str) -> None:
     """The garbage collector calls it anywhere; where it cannot wait, it gets an error."""

@@ -44,6 +44,7 @@ def test_what_is_encoded_can_be_decoded(message: Message) -> None:
     assert snapshot(to_aionode(again)) == snapshot(message)
 
 
+@pytest.mark.slow
 def test_a_new_message_is_decoded_into_what_its_constructor_makes() -> None:
     """Decoding bypasses the constructor, and must produce values of the same types."""
     for cls in various_classes().values():

@@ -166,6 +166,7 @@ def test_a_signal_that_is_forwarded_does_not_end_the_cleanup(
     assert wheels.heard[-1] == 0
 
 
+@pytest.mark.slow
 def test_a_hangup_that_is_ignored_stays_ignored(wheels: Wheels, tmp_path: Path) -> None:
     """``nohup`` starts programs this way, which should continue when the terminal is lost."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)

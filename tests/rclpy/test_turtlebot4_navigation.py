@@ -105,6 +105,7 @@ finally:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(60)
 @pytest.mark.one_loop

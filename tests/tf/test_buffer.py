@@ -267,6 +267,7 @@ async def test_waits_in_callbacks_of_a_timer_and_of_one_topic_do_not_block_each_
                 await node.get_clock().sleep(0.001)
 
 
+@pytest.mark.slow
 async def test_a_wait_without_an_end_can_be_given_up(buffer: Buffer) -> None:
     """In tf2, `lookup_transform_async` has no timeout, and its future stays in the buffer."""
     waiters = living(Waiter)

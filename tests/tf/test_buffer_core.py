@@ -147,6 +147,7 @@ def test_what_is_older_than_the_cache_time_is_refused(logged: list[str]) -> None
     assert not core.can_transform_core("p", "c", at(9.5))[0]
 
 
+@pytest.mark.slow
 def test_a_flood_of_frames_takes_bounded_memory(
     logged: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

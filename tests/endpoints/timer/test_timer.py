@@ -538,6 +538,7 @@ def test_what_is_no_period_is_refused(seconds: Any, error: type[Exception]) -> N
 # Endurance
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio(loop_factories=["asyncio"])
 async def test_a_million_ticks_on_the_manual_clock() -> None:
     """No drift from the first to the millionth, each at its own time, and a stall costs one call.

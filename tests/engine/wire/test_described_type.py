@@ -206,6 +206,7 @@ def test_a_description_beyond_the_limits_is_refused(
     assert "\x1b" not in str(raised.value)
 
 
+@pytest.mark.slow
 def test_types_in_types_are_walked_once_each() -> None:
     """Twelve levels of two fields are four thousand paths, but only twelve types."""
     made = type_from_description(tower(12, width=2))

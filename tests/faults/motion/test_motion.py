@@ -55,6 +55,7 @@ def outcome_of(motion: Motion) -> Stopped:
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("motion", SHORT.values(), ids=SHORT)
 def test_motion_ends_with_whoever_asked_for_it(motion: Motion) -> None:

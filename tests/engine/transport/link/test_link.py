@@ -399,6 +399,7 @@ async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_lose
         assert numbers.subscription.stats.dropped == numbers.subscription.stats.lost == 0
 
 
+@pytest.mark.slow
 async def test_keep_all_loses_nothing_while_the_link_comes_up() -> None:
     """However far behind Zenoh is when the reader asks for the link."""
     async with two_nodes() as nodes:

@@ -6,6 +6,8 @@ import gc
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 from aionode.interfaces.std_msgs.msg import Int32
 from tests.support.arrivals import reader_of
 from tests.support.links import Counting, Two, folder, two_nodes, writer_of
@@ -55,6 +57,7 @@ async def linked_subscription(nodes: Two) -> Counter[str]:
     return own_objects(subscription, shared)
 
 
+@pytest.mark.slow
 async def test_a_linked_subscription_is_made_of_few_objects() -> None:
     """Objects that messages do not need are created only on demand.
 

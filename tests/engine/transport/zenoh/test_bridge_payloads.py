@@ -241,6 +241,7 @@ def robot() -> Iterator[Robot]:
         yield Robot(bridge)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)  # many of the steps wait for an answer that does not come
 @given(st.lists(PUBLISH | CALL | SERVE | GOAL | EXECUTE, min_size=1, max_size=4))
 @settings(max_examples=20, suppress_health_check=list(HealthCheck))

@@ -122,6 +122,7 @@ async def test_many_calls_at_once_each_get_their_answer() -> None:
         assert [answer.sum for answer in answers] == list(range(1, 201))
 
 
+@pytest.mark.slow
 @pytest.mark.one_loop
 async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
     monkeypatch: pytest.MonkeyPatch,

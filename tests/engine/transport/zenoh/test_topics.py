@@ -306,6 +306,7 @@ async def test_subscriptions_of_a_context_share_a_large_payload() -> None:
     assert [first[-1] for first, _ in payloads] == [0, 1]
 
 
+@pytest.mark.slow
 async def test_keep_all_loses_nothing() -> None:
     """However fast the publisher is: it is told to wait, and `drain` waits."""
     count = 12_000

@@ -710,6 +710,7 @@ def test_a_message_may_have_a_thousand_fields() -> None:
     assert cdr.decode(cls, cdr.encode(message)) == message
 
 
+@pytest.mark.slow
 def test_definitions_that_double_at_each_level_make_little_code() -> None:
     """Nested messages are only unfolded while they are small."""
     cls: Any = Time

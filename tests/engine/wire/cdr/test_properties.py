@@ -69,6 +69,7 @@ def check_round_trip(message: Message) -> None:
     check(cdr.decode(cls, encoded))
 
 
+@pytest.mark.slow
 def test_classes_of_every_kind_survive_the_wire_with_their_defaults() -> None:
     """So that each kind of field is covered by every run."""
     for cls in various_classes().values():
@@ -99,6 +100,7 @@ def check_pieces(message: Message, least: int) -> None:
     assert cdr.has_views(cls) or all(isinstance(one, bytes) for one in pieces)
 
 
+@pytest.mark.slow
 def test_usual_messages_take_the_fast_way() -> None:
     """Generated functions encode and decode them: with the fallback the codec would be slow."""
 
@@ -138,6 +140,7 @@ def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObjec
         cdr.decode(cls, memoryview(cut))
 
 
+@pytest.mark.slow
 def test_a_message_cut_anywhere_is_a_decode_error() -> None:
     """At each of the first places, for fields of every kind."""
     for cls in various_classes().values():
@@ -182,6 +185,7 @@ def test_bytes_of_another_type_are_no_surprise(
     outcome(cdr.decode, cls, encoded)
 
 
+@pytest.mark.slow
 def test_no_length_makes_more_memory_than_the_data_could_fill() -> None:
     """Every aligned word is in turn the largest length: it is believed only if bytes follow."""
     for cls in various_classes().values():

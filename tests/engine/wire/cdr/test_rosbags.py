@@ -108,6 +108,7 @@ def same_value(kind: FieldType, ours: Any, theirs: Any) -> bool:
     return bool(ours == theirs)
 
 
+@pytest.mark.slow
 @many
 @given(cls=any_class, data=st.data())
 def test_rosbags_and_aionode_read_each_other(cls: type[Message], data: st.DataObject) -> None:
@@ -124,6 +125,7 @@ def test_rosbags_and_aionode_read_each_other_in_every_class(package: str) -> Non
             few(given(messages(cls))(check_both_ways))()
 
 
+@pytest.mark.slow
 def test_rosbags_and_aionode_read_the_defaults_of_classes_of_every_kind() -> None:
     """So that each kind of field is compared in every run."""
     for name in CLASSES.keys() & various_classes():
