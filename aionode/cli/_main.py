@@ -5,7 +5,6 @@ Click is the only large import here; a noun's module is imported only when it is
 
 from __future__ import annotations
 
-import difflib
 import errno
 import importlib
 import io
@@ -87,6 +86,8 @@ class LateGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
+            import difflib  # only for an error text
+
             close = difflib.get_close_matches(args[0], self.list_commands(ctx), 1)
             if close and args[0] not in self.list_commands(ctx):
                 text = f"No such command '{args[0]}'. Did you mean '{close[0]}'?"

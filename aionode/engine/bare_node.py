@@ -100,6 +100,10 @@ class BarePublisher(BareEndpoint):
             if not (writer.is_placeholder or isinstance(writer, LocalWriter))
         ]
 
+    def is_heard(self) -> bool:
+        """Return whether a message that is published now would be sent or kept."""
+        return any(writer.active for writer in (*self._here, *self._elsewhere))
+
     def publish(self, msg: Any, source_ns: int) -> None:
         """Send a message to every matched subscription.
 

@@ -6,12 +6,13 @@ import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec, PathFinder
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import find_spec, spec_from_loader
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
+from aionode._process.imports import uncollected
 from aionode.idl.search import add_folder, has_interfaces, module_name, names_in
 from aionode.interfaces import shipped_packages
 
@@ -236,9 +237,20 @@ def gives_way(package: str) -> bool:
     return here().module_root(package) is not None
 
 
+class UncollectedLoader(SourceFileLoader):
+    """Loads a module, and what that imports, without looking for garbage meanwhile."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Run the module's code."""
+        with uncollected():
+            super().exec_module(module)
+
+
 def of_supplied(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
     """Return the spec of a module of a package in `FOLDER`."""
     spec = PathFinder.find_spec(fullname, [str(FOLDER)] if path is None else path)
+    if spec is not None and type(spec.loader) is SourceFileLoader:
+        spec.loader = UncollectedLoader(spec.loader.name, spec.loader.path)
     if spec is None and fullname.partition(".")[0] in A_MODULE_FOR_EACH_CLASS:
         return of_one_name(fullname)
     return spec

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import fork_server
+from tests.support.peers import isolated_environment
 
 PROGRAM = """\
 import sys
@@ -293,6 +294,38 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
         assert f"aionode.rclpy.{package}" not in loaded
     for module in ("'cv2'", "'aionode.content_filter'", "rclpy._check'", "rclpy.missing'"):
         assert module not in loaded
+
+
+def test_a_node_spins_without_numpy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first message with an array loads it; rclpy's own types have some, too."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    (folder / "own.py").write_text(
+        "import sys, rclpy\n"
+        "from sensor_msgs.msg import Imu\n"
+        "rclpy.init()\n"
+        "node = rclpy.create_node('own')\n"
+        "rclpy.spin_once(node, timeout_sec=0)\n"
+        "print('numpy' in sys.modules)\n"
+        "print(repr(Imu(linear_acceleration_covariance=range(9)).orientation_covariance[:2]))\n"
+    )
+
+    done = run(folder, "own.py", fresh=True)
+
+    assert (done.stdout, done.stderr) == ("False\narray([0., 0.])\n", "")
+
+
+def test_the_packages_of_ros_are_imported_without_collecting_garbage(folder: Path) -> None:
+    """Collections would find none; afterwards they happen as before."""
+    (folder / "own.py").write_text(
+        "import gc\n"
+        "phases = []\n"
+        "gc.callbacks.append(lambda phase, info: phases.append(phase))\n"
+        "import rclpy.node\n"
+        "print(phases, gc.isenabled())\n"
+    )
+
+    assert run(folder, "own.py", fresh=True).stdout == "[] True\n"
 
 
 def test_a_missing_package_of_ros_says_what_to_do(folder: Path) -> None:

@@ -18,7 +18,6 @@ import click
 from aionode.cli._support.exit import become
 from aionode.cli._support.options import interfaces_option
 from aionode.errors import CommandError, PackageNotFoundError
-from aionode.interfaces import shipped_packages
 
 if TYPE_CHECKING:
     from aionode._packages import Packages
@@ -257,6 +256,9 @@ def is_rclpy_program(name: str) -> bool:
             else []
         )
     }
-    return not {"rclpy", *shipped_packages()}.isdisjoint(
-        module.partition(".")[0] for module in modules
-    )
+    packages = {module.partition(".")[0] for module in modules}
+    if "rclpy" in packages:
+        return True
+    from aionode.interfaces import shipped_packages  # it loads what messages are made of
+
+    return not packages.isdisjoint(shipped_packages())

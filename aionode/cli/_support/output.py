@@ -12,8 +12,6 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any, TextIO, TypeAlias
 
-import msgspec
-
 from aionode._process.streams import discard
 from aionode.errors import CommandError, escaped
 
@@ -62,6 +60,8 @@ class Output:
         Floats that JSON cannot represent become strings: ``NaN``, ``Infinity``, ``-Infinity``.
         """
         if self.json:
+            import msgspec  # `aionode run` and others write no records
+
             self._write(msgspec.json.encode(json_safe(record)).decode())
         else:
             self._write(text)

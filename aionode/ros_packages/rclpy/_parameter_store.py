@@ -69,6 +69,9 @@ class ParameterEvents:
         Raises:
             RCLError: the context is shut down.
         """
-        event.stamp = self._clock.now().to_msg()
-        self._publisher.handle.refuse_after_shutdown("Failed to publish")
-        self._publisher.publish(event)
+        handle = self._publisher.handle
+        handle.refuse_after_shutdown("Failed to publish")
+        # Each node has one event at its start, when nobody hears it yet: encoding it loads numpy.
+        if handle.bare.is_heard():
+            event.stamp = self._clock.now().to_msg()
+            self._publisher.publish(event)

@@ -115,11 +115,11 @@ def own_array_check(name: str, type_: FieldType) -> Check | None:
     if not is_numeric(type_):
         return None
     if type_.container == "array":
-        import numpy as np
-
         dtype = DTYPES[type_.kind]
 
         def check_ndarray(value: Any) -> bool:
+            import numpy as np  # not with the class: most programs make no such array
+
             if not isinstance(value, np.ndarray):
                 return False
             what = f"The '{name}' numpy.ndarray() must have"

@@ -157,6 +157,17 @@ def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
     return message
 
 
+class LateNumpy:
+    """Numpy, imported when the first array of a class is made: rclpy's own types have some."""
+
+    def __getattr__(self, name: str) -> Any:
+        import numpy as np
+
+        value = getattr(np, name)
+        setattr(self, name, value)
+        return value
+
+
 class ClassSource:
     """The source of one message class, and the values that it refers to by name."""
 
@@ -172,9 +183,7 @@ class ClassSource:
             "UNKNOWN": refuse_unknown,
         }
         if any(field.type.container == "array" and is_numeric(field.type) for field in self.fields):
-            import numpy as np
-
-            self.namespace["NUMPY"] = np
+            self.namespace["NUMPY"] = LateNumpy()
         for number, field in enumerate(self.fields):
             nested = None if field.type.nested is None else python_class(field.type.nested)
             self.namespace[f"CHECK{number}"] = field_check(field.name, field.type, nested)
