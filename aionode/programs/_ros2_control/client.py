@@ -30,7 +30,7 @@ class ManagerClient:
     Args:
         node: The node that calls.
         manager: The full name of the manager.
-        wait_sec: How long to wait for the manager; 0 means for ever.
+        wait_sec: How long to wait for the manager; 0 means forever.
         call_sec: How long to wait for each answer.
     """
 
@@ -46,7 +46,7 @@ class ManagerClient:
         """Call a service, and return the answer.
 
         Raises:
-            CommandError: There is no such service in time, or no answer.
+            CommandError: The service does not become available in time, or does not answer.
         """
         service = f"{self.manager}/{name}"
         client = self.node.create_client(kind, service)
@@ -83,7 +83,7 @@ class ManagerClient:
     async def switch(
         self, *, start: list[str], stop: list[str], asap: bool, timeout_sec: float
     ) -> bool:
-        """Activate and deactivate controllers; return whether all of it was done."""
+        """Activate and deactivate controllers; return whether all of them were switched."""
         kind = srv.SwitchController
         request = kind.Request(
             activate_controllers=start,
@@ -96,7 +96,7 @@ class ManagerClient:
         return bool((await self.call(kind, "switch_controller", request)).ok)
 
     async def set_parameter(self, controller: str, name: str, value: Any) -> None:
-        """Set a parameter of the manager that is about a controller.
+        """Set a controller's parameter in the manager.
 
         Raises:
             CommandError: The manager refuses it.

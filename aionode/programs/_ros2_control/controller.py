@@ -23,11 +23,11 @@ class Controller(LifecycleNode):
         hardware: The hardware that it reads and writes.
         command_names: The interfaces that it writes, once it is configured.
         state_names: The interfaces that it reads, once it is configured.
-        update_rate: How often it is updated in a second; 0 means as often as the manager.
+        update_rate: How often per second it is updated; 0 means at the manager's rate.
     """
 
     def __init__(self, name: str, hardware: Hardware, **options: Any) -> None:
-        # The manager alone changes its state: it also has to release the interfaces.
+        # Only the manager changes its state, since it also has to release the interfaces.
         super().__init__(name, enable_communication_interface=False, **options)
         self.hardware = hardware
         self.command_names: list[str] = []

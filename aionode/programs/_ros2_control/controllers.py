@@ -1,4 +1,4 @@
-"""The controllers of a controller manager: they are loaded, configured, switched and updated."""
+"""Loads, configures, switches and updates the controllers of a controller manager."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ TYPES: Final[dict[str, type[Controller]]] = {
     "position_controllers/JointGroupPositionController": JointGroupPositionController,
     "velocity_controllers/JointGroupVelocityController": JointGroupVelocityController,
 }
-"""The controllers; all are imported at once, since the robot moves when one is loaded later."""
+"""The controllers; all are imported at the start, since the robot may move when one is loaded."""
 
 
 class SwitchError(RuntimeError):
@@ -48,8 +48,8 @@ class Controllers:
 
     Args:
         manager: The manager's node.
-        hardware: What they control.
-        tasks: Where their nodes run.
+        hardware: The hardware that they control.
+        tasks: The task group in which their nodes run.
     """
 
     def __init__(self, manager: Node, hardware: Hardware, tasks: asyncio.TaskGroup) -> None:
@@ -117,7 +117,7 @@ class Controllers:
         return own + [each for each in more if each != "--ros-args"]
 
     async def configure(self, name: str) -> bool:
-        """Configure a controller, which is cleaned up before if it is inactive."""
+        """Configure a controller; an inactive one is cleaned up first."""
         self.logger.info(f"Configuring controller: '{name}'")
         state = self.state(name)
         if state == "missing":
@@ -231,7 +231,7 @@ class Controllers:
         return [name for name, problem in problems.items() if not problem]
 
     def stop_problem(self, name: str) -> str:
-        """Return why a controller cannot be deactivated, or nothing."""
+        """Return why a controller cannot be deactivated; empty if it can."""
         state = self.state(name)
         if state == "missing":
             return (
@@ -243,7 +243,7 @@ class Controllers:
         return ""
 
     def start_problem(self, name: str, stop: list[str]) -> str:
-        """Return why a controller cannot be activated, or nothing."""
+        """Return why a controller cannot be activated; empty if it can."""
         state = self.state(name)
         if state == "missing":
             return (
@@ -260,7 +260,7 @@ class Controllers:
         return ""
 
     def refuse_conflicts(self, start: list[str], stop: list[str]) -> None:
-        """Raise if the interfaces of controllers are not there, or not free."""
+        """Raise SwitchError if interfaces of controllers are not available or already claimed."""
         taken = {name: owner for name, owner in self.hardware.claims.items() if owner not in stop}
         may_be_inactive = "defaults.allow_controller_activation_with_inactive_hardware"
         is_usable = (

@@ -55,7 +55,7 @@ class Part:
     mimic: Mimic | None
 
     def follow(self, states: MutableMapping[str, float]) -> None:
-        """Move a joint with the one that it mimics, if any, in the states of a robot."""
+        """Update the states of a joint that mimics another one; other parts stay unchanged."""
         if self.mimic is None:
             return
         for each in self.states:
@@ -134,7 +134,7 @@ def component_of(
     hardware = tag.find("hardware")
     plugin = None if hardware is None else hardware.findtext("plugin")
     if hardware is None or not plugin:
-        raise ValueError(f"<ros2_control name={name!r}> names no <plugin> in its <hardware>")
+        raise ValueError(f"<ros2_control name={name!r}> has no <plugin> in its <hardware>")
     parts = [
         part_of(each, robot, ranges.get(each.get("name", ""), {}))
         for each in tag
@@ -165,7 +165,7 @@ def part_of(tag: ET.Element, robot: Robot, ranges: dict[str, tuple[float, float]
 
 
 def interface_of(tag: ET.Element, part: str, ranges: dict[str, tuple[float, float]]) -> Interface:
-    """Return an interface; what it says about its range counts before the joint's limits."""
+    """Return an interface; its own range takes precedence over the joint's limits."""
     kind = named(tag)
     name = f"{part}/{kind}"
     given = parameters_of(tag)
@@ -180,7 +180,7 @@ def interface_of(tag: ET.Element, part: str, ranges: dict[str, tuple[float, floa
 
 
 def ranges_of(joint: ET.Element) -> dict[str, tuple[float, float]]:
-    """Return the ranges of a joint's values, as its limits give them."""
+    """Return the ranges of a joint's values according to its limits."""
     limit = joint.find("limit")
     if limit is None:
         return {}

@@ -108,7 +108,7 @@ class DiffDriveController(Controller):
         """Check the parameters.
 
         Raises:
-            CommandError: A parameter does not fit.
+            CommandError: A parameter is invalid.
         """
         given = self.given
         self.wheels = {
@@ -209,7 +209,7 @@ class DiffDriveController(Controller):
             return
         command = (msg.twist.linear.x, msg.twist.angular.z)
         if all(map(math.isfinite, command)):
-            # A clock that is ahead must not put the timeout off.
+            # A clock that is ahead must not postpone the timeout.
             self.command, self.heard_ns = command, min(sent, now)
         else:
             self.get_logger().warning(
@@ -226,7 +226,7 @@ class DiffDriveController(Controller):
         return left, right
 
     def update(self, now: Time, period_sec: float) -> None:
-        """Turn the wheels as commanded, and publish where the base is."""
+        """Turn the wheels as commanded, and publish the odometry."""
         timeout = self.given["cmd_vel_timeout"]
         self.heard_ns = min(self.heard_ns, now.nanoseconds)  # simulated time may be set back
         if self.command and timeout and now.nanoseconds - self.heard_ns > timeout * 1e9:
@@ -268,7 +268,7 @@ class DiffDriveController(Controller):
             self.limited.publish(twist if self.is_humble else stamped)
 
     def publish(self, now: Time) -> None:
-        """Publish where the base is."""
+        """Publish the odometry."""
         odometry, msg = self.odometry, self.message
         half = odometry.heading / 2
         rotation = Quaternion(z=math.sin(half), w=math.cos(half))
@@ -291,7 +291,7 @@ class DiffDriveController(Controller):
     def set_odometry(
         self, request: SetOdometry.Request, response: SetOdometry.Response
     ) -> SetOdometry.Response:
-        """Put the base somewhere else."""
+        """Set the pose of the base."""
         if self.lifecycle_state.label != "active":
             response.message = "Controller is not active"
             return response

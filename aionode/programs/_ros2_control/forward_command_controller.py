@@ -24,7 +24,7 @@ class ForwardCommandController(Controller):
     """Writes the values of `~/commands`, one for each joint, to one interface of the joints."""
 
     interface = ""
-    """The interface, if it is not a parameter."""
+    """The interface that a subclass writes; if empty, a parameter names it."""
 
     def __init__(self, name: str, hardware: Hardware, **options: Any) -> None:
         super().__init__(name, hardware, **options)
@@ -56,7 +56,7 @@ class ForwardCommandController(Controller):
         return super().on_activate(state)
 
     def on_commands(self, msg: Float64MultiArray) -> None:
-        """Take commands, unless they do not fit."""
+        """Take commands, unless their number is wrong or one is not finite."""
         values = list(msg.data)
         if len(values) != len(self.command_names):
             self.get_logger().error(

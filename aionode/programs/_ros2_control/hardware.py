@@ -30,7 +30,7 @@ TOPICS: Final = (
 
 
 class Driver(Protocol):
-    """What reads the states of a component and carries out its commands."""
+    """Reads the states of a component and carries out its commands."""
 
     def claim(self, names: list[str]) -> None:
         """Note that these commands are given from now on."""
@@ -42,7 +42,7 @@ class Driver(Protocol):
         """Carry out the commands."""
 
     def rest(self) -> None:
-        """Stop what moves, as long as `write` is not called."""
+        """Stop what moves, until `write` is called again."""
 
     async def run(self) -> None:
         """Do what takes time, until it is cancelled or nothing is left to do."""
@@ -97,7 +97,7 @@ class Hardware:
         return MockSystem(component, self.commands, self.states)
 
     def set_state(self, name: str, state: int) -> None:
-        """Take a component to a state, through those that lie between."""
+        """Take a component to a state, through the states in between."""
         self.lifecycle[name] = state
         if state not in (State.PRIMARY_STATE_INACTIVE, State.PRIMARY_STATE_ACTIVE):
             self.drivers.pop(name, None)
@@ -138,7 +138,7 @@ class Hardware:
         self.claims = {name: owner for name, owner in self.claims.items() if owner != controller}
 
     def read(self, period_sec: float) -> None:
-        """Update the states of what is configured."""
+        """Update the states of the hardware."""
         for driver in self.drivers.values():
             driver.read(period_sec)
 
@@ -188,7 +188,7 @@ class Hardware:
 
 
 def mocked(component: HardwareComponent) -> list[Interface]:
-    """Return the commands by which a mock is told what its sensors and GPIOs measure."""
+    """Return the commands that tell a mock what its sensors and GPIOs measure."""
     return [
         each
         for part in component.parts
@@ -200,10 +200,10 @@ def mocked(component: HardwareComponent) -> list[Interface]:
 
 
 def refuse_compiled(component: HardwareComponent) -> None:
-    """Raise if the plugin of a component is not here.
+    """Raise if aionode does not have the plugin of a component.
 
     Raises:
-        CommandError: It is written in C++.
+        CommandError: The plugin is written in C++.
     """
     if component.plugin not in (*MOCKS, *TOPICS):
         raise CommandError(

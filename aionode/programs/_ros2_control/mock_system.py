@@ -71,13 +71,13 @@ class MockSystem:
             self.follow(part)
 
     def write(self) -> None:
-        """`read` carries the commands out."""
+        """Do nothing: `read` carries out the commands."""
 
     def rest(self) -> None:
         """Nothing moves."""
 
     async def run(self) -> None:
-        """Nothing takes time."""
+        """Return at once: nothing takes time."""
 
     def move(self, joint: str, period_sec: float) -> None:
         """Compute the position, velocity and acceleration of a joint."""
@@ -110,7 +110,7 @@ class MockSystem:
                 self.states[name] = value
 
     def follow(self, part: Part) -> None:
-        """Move a joint with the one that it mimics, and shift what follows at an offset."""
+        """Move a joint with the one that it mimics, and set the state that has an offset."""
         part.follow(self.states)
         name = f"{part.name}/{self.shifted}"
         position = self.commands.get(f"{part.name}/position", math.nan)

@@ -1,4 +1,4 @@
-"""Where a base with two driven sides is, from how its wheels turn."""
+"""Computes the pose and speed of a base with two driven sides from its wheels."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from statistics import fmean
 __all__ = ["Odometry"]
 
 LEAST_SEC = 1e-6
-"""No speed is computed over a shorter time."""
+"""The shortest time over which a speed is computed, in seconds."""
 
 
 class Odometry:
     """The pose and speed of a base.
 
     Args:
-        separation: The distance of the wheels.
+        separation: The distance between the wheels.
         radii: The radius of the left and the right wheels.
         window: Over how many updates the speed is averaged.
 
     Attributes:
-        x: Its position.
-        y: Its position.
+        x: Its position along the x axis.
+        y: Its position along the y axis.
         heading: Its direction.
         linear: Its speed.
         angular: How fast it turns.
@@ -36,7 +36,7 @@ class Odometry:
         self.set(0.0, 0.0, 0.0)
 
     def set(self, x: float, y: float, heading: float) -> None:
-        """Put the base somewhere else, standing still."""
+        """Set the pose of the base, standing still."""
         self.x, self.y, self.heading = x, y, heading
         self.linear = self.angular = 0.0
         self.speeds.clear()

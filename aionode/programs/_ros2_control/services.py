@@ -19,12 +19,12 @@ __all__ = ["Services"]
 
 
 def shown(name: str) -> str:
-    """Return a name of a request as it can be logged: no controller has control characters."""
+    """Return a name from a request, with control characters escaped for the log."""
     return escaped(name, one_line=True)
 
 
 class Services:
-    """What a controller manager does on request, and on each update.
+    """Answers the requests to a controller manager, and carries out each update.
 
     Args:
         manager: The manager's node.

@@ -73,7 +73,7 @@ def parsed(words: list[str]) -> tuple[argparse.Namespace, list[Job]]:
     Raises:
         CommandError: A file of parameters does not exist.
     """
-    words = [word for word in words if word]  # launch files have empty ones for what is not wanted
+    words = [word for word in words if word]  # launch files pass empty ones for unused options
     if "--controller" in words and not {"-h", "--help"} & set(words):
         common, _ = common_options().parse_known_args(words)
         starts = [index for index, word in enumerate(words) if word == "--controller"]
@@ -186,7 +186,7 @@ class Spawner:
         self.logger.info(f"Loaded {job.name}")
 
     async def set_parameters(self, job: Job) -> None:
-        """Tell the manager the type and the files of a controller."""
+        """Set the type and the parameter files of a controller in the manager."""
         kind = job.controller_type
         files = []
         for file in job.param_files:
@@ -208,7 +208,7 @@ class Spawner:
             await self.client.set_parameter(job.name, "type", kind)
 
     async def need(self, kind: Any, name: str, controller: str) -> None:
-        """Call a service about a controller.
+        """Call a service for a controller, which has to succeed.
 
         Raises:
             CommandError: It failed.

@@ -12,7 +12,7 @@ __all__ = ["SpeedLimiter"]
 
 @dataclass(frozen=True)
 class Range:
-    """The values between a minimum and a maximum, all if there is no maximum."""
+    """The values between a minimum and a maximum; all values if there is no maximum."""
 
     least: float
     greatest: float

@@ -1,4 +1,4 @@
-"""Hardware behind topics: another program reads the commands there, and says where joints are."""
+"""Hardware behind topics: another program receives the commands and publishes the joint states."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TTL_SEC: Final = 0.3
 
 
 class TopicSystem:
-    """Publishes commands as joint states, and reads such, as ``TopicBasedSystem`` does.
+    """Publishes commands, and reads states, as JointState messages, like ``TopicBasedSystem``.
 
     Velocities and efforts are published under a lease: a stop follows when the program ends, when
     it hangs, and when the component is deactivated.
@@ -66,16 +66,16 @@ class TopicSystem:
         self.is_due = asyncio.Event()
 
     def hear(self, msg: JointState) -> None:
-        """Note where joints are."""
+        """Keep the received states of joints."""
         for field in FIELDS:
             for joint, value in zip(msg.name, getattr(msg, field), strict=False):
                 self.heard[f"{joint}/{field}"] = float(value)
 
     def claim(self, names: list[str]) -> None:
-        """All commands that are given are published, whoever gives them."""
+        """Do nothing: all commands are published, whichever controller gives them."""
 
     def read(self, period_sec: float) -> None:
-        """Take over where joints are; one that mimics another follows it."""
+        """Update the states with those received; a joint that mimics another follows it."""
         del period_sec
         for name, value in self.heard.items():
             if name not in self.states:
@@ -89,7 +89,7 @@ class TopicSystem:
             part.follow(self.states)
 
     def write(self) -> None:
-        """Publish the commands, unless none is given, or the joints are there."""
+        """Publish the commands, unless none is given, or the joints have reached them."""
         values = {
             field: [self.commands.get(f"{joint}/{field}", math.nan) for joint in self.moved]
             for field in self.fields
@@ -107,7 +107,7 @@ class TopicSystem:
             self.publisher.publish(msg)
 
     def is_far(self, positions: list[float]) -> bool:
-        """Return whether joints are not where they are to be."""
+        """Return whether the joints are farther from their commands than the threshold, in sum."""
         return (
             sum(
                 abs(wanted - self.states.get(f"{joint}/position", math.inf))
@@ -131,7 +131,7 @@ class TopicSystem:
         return stop
 
     async def run(self) -> None:
-        """Publish velocities and efforts until it is cancelled; then, too, a stop is sent."""
+        """Publish velocities and efforts until cancelled, when a stop is sent as well."""
         while True:
             await self.due()
             if self.wanted is None:

@@ -23,7 +23,7 @@ async def unspawn(manager: str, names: list[str], timeout_sec: float) -> None:
     """
     async with Node(f"unspawner_{names[0]}") as node:
         client = ManagerClient(node, manager_name(node, manager))
-        # What is not active is unloaded all the same.
+        # Controllers that are not active are unloaded all the same.
         if await client.switch(start=[], stop=names, asap=True, timeout_sec=timeout_sec):
             node.get_logger().info("Deactivated controller")
         for name in names:

@@ -40,8 +40,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
 
     It fails if there is no goal, or if the goal is rejected or does not succeed. A goal is
     cancelled when the behaviour is interrupted, even if it is accepted only later, and when the
-    tree is shut down. A behaviour whose server has gone keeps running, and warns once for each
-    goal.
+    tree is shut down. A behaviour whose server is gone keeps running, and warns once for each goal.
 
     Args:
         name: The behaviour's name.

@@ -1,4 +1,4 @@
-"""The former name of `action_clients.FromConstant`."""
+"""Provides `action_clients.FromConstant` under its former name."""
 
 from py_trees_ros.action_clients import FromConstant as ActionClient
 

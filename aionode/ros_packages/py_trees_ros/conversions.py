@@ -62,7 +62,7 @@ WITH_MEMORY: Final = "WithMemory"
 
 
 def key_of(table: dict[Any, Any], value: int, what: str) -> Any:
-    """Return the key in a table of a constant in a message."""
+    """Return the key of a table whose value is a constant in a message."""
     for key, constant in table.items():
         if constant == value:
             return key
@@ -141,7 +141,7 @@ def msg_constant_to_blackbox_level_enum(value: int) -> Any:
 
 
 def uuid4_to_msg(uuid4: uuid.UUID | None = None) -> Any:
-    """Return a UUID as a message; a new one if none is given."""
+    """Return a UUID as a message; by default, a new one."""
     return UUID(uuid=list((uuid4 or uuid.uuid4()).bytes))
 
 

@@ -12,11 +12,11 @@ __all__ = [
 
 
 class MultipleFoundError(Exception):
-    """More than one was found where one was expected."""
+    """Several services or topics were found where one was expected."""
 
 
 class NotFoundError(Exception):
-    """It was not found in the graph."""
+    """A service or topic was not found in the graph."""
 
 
 class NotReadyError(Exception):
@@ -28,4 +28,4 @@ class ServiceError(Exception):
 
 
 class TimedOutError(Exception):
-    """It did not become available in time."""
+    """A server, publisher or tree did not become available in time."""

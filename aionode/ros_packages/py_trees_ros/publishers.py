@@ -57,7 +57,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Publish.
 
         Raises:
-            TypeError: It is not a message of the topic's type.
+            TypeError: The value is not a message of the topic's type.
         """
         self.logger.debug(f"{type(self).__name__}.update()")
         try:

@@ -70,7 +70,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):
         """Broadcast.
 
         Raises:
-            TypeError: It is not a `Transform`.
+            TypeError: The value is not a `Transform`.
         """
         transform = None
         if self.blackboard.exists(self.variable_name):

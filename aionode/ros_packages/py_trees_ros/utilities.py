@@ -1,4 +1,4 @@
-"""What the modules of py_trees_ros share: QoS profiles, names, and groups of endpoints."""
+"""QoS profiles, names, and groups of endpoints for the modules of py_trees_ros."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def node_among(arguments: dict[str, Any], behaviour: Any) -> Any:
     """Return the node from the arguments of a behaviour's `setup`.
 
     Raises:
-        KeyError: It is missing.
+        KeyError: There is no node among them.
     """
     if "node" not in arguments:
         raise KeyError(

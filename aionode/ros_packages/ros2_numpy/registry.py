@@ -45,8 +45,8 @@ def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
 
     Args:
         msg: The message.
-        args: What its converter takes besides.
-        kwargs: The same by name.
+        args: Further arguments of its converter.
+        kwargs: Keyword arguments of its converter.
 
     Raises:
         ValueError: No converter is known, or the sequence is empty.
@@ -69,7 +69,7 @@ def msgify(msg_type: type[Any], numpy_obj: Any, *args: Any, **kwargs: Any) -> An
     Args:
         msg_type: The class of the message.
         numpy_obj: The array.
-        args: What the converter takes besides.
+        args: Further arguments of the converter.
         kwargs: Keyword arguments of the converter; ``plural=True`` creates a sequence of messages.
 
     Raises:

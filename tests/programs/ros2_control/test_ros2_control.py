@@ -58,7 +58,7 @@ def test_a_description_names_interfaces_with_their_limits_and_first_values() -> 
         ("<robot name='x'><link name='a'/></robot>", "it has no <ros2_control>"),
         (
             "<robot name='x'><link name='a'/><ros2_control name='b'/></robot>",
-            "names no <plugin>",
+            "has no <plugin>",
         ),
         (MOVING.replace('<joint name="grip"> <state', '<joint name="gr"> <state'), "joint 'gr'"),
         (MOVING.replace(">0.25<", ">much<"), "lift/position: 'much' is not a number"),

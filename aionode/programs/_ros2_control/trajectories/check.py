@@ -1,4 +1,4 @@
-"""Whether a trajectory that somebody sent can be followed."""
+"""Checks whether a received trajectory can be followed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["TrajectoryCheck", "nanoseconds"]
 
 FIELDS: Final = ("positions", "velocities", "accelerations", "effort")
 STANDS_STILL: Final = 1.2e-7
-"""As in the original: the resolution of a float of 32 bits at 1."""
+"""The resolution of a 32-bit float at 1, as in ros2_controllers."""
 
 
 def nanoseconds(stamp: Any) -> int:
@@ -23,7 +23,7 @@ def nanoseconds(stamp: Any) -> int:
 
 @dataclass(frozen=True)
 class TrajectoryCheck:
-    """What a controller can follow.
+    """Checks trajectories against what a controller can follow.
 
     Attributes:
         joints: Its joints.
@@ -38,7 +38,7 @@ class TrajectoryCheck:
     may_end_moving: bool
 
     def problem(self, msg: JointTrajectory, now_ns: int) -> str:
-        """Return why a trajectory cannot be followed, or nothing."""
+        """Return why a trajectory cannot be followed; empty if it can."""
         names = set(msg.joint_names)
         is_partial = self.allows_partial and names and names <= set(self.joints)
         if names != set(self.joints) and not is_partial:
@@ -49,7 +49,7 @@ class TrajectoryCheck:
         return next(filter(None, problems), "") or self.end_problem(msg, now_ns)
 
     def point_problem(self, index: int, msg: JointTrajectory) -> str:
-        """Return what is wrong with a point, or nothing."""
+        """Return what is wrong with a point; empty if nothing is."""
         point: JointTrajectoryPoint = msg.points[index]
         if index and nanoseconds(point.time_from_start) <= nanoseconds(
             msg.points[index - 1].time_from_start
@@ -73,7 +73,7 @@ class TrajectoryCheck:
         return ""
 
     def end_problem(self, msg: JointTrajectory, now_ns: int) -> str:
-        """Return what is wrong with the last point, or nothing."""
+        """Return what is wrong with the last point; empty if nothing is."""
         last = msg.points[-1]
         if not self.may_end_moving:
             for name, speed in zip(msg.joint_names, last.velocities, strict=False):

@@ -57,7 +57,7 @@ class Goal:
     Attributes:
         handle: Its handle.
         end: How it ends, as an error code and a text.
-        told_ns: When feedback was published.
+        told_ns: When feedback was last published.
     """
 
     handle: Any
@@ -68,7 +68,8 @@ class Goal:
 class JointTrajectoryController(Controller):
     """Follows the last trajectory of `~/joint_trajectory` or `~/follow_joint_trajectory`.
 
-    When there is none, when one is cancelled, and when joints leave it, they stay where they are.
+    Without a trajectory, when one is cancelled, and when the joints deviate too far from it, the
+    joints stay where they are.
     """
 
     def __init__(self, name: str, hardware: Hardware, **options: Any) -> None:
@@ -106,7 +107,7 @@ class JointTrajectoryController(Controller):
         """Check the parameters.
 
         Raises:
-            CommandError: A parameter does not fit.
+            CommandError: A parameter is invalid.
         """
         chosen = {
             key: [each for each in self.given[key] if each]
@@ -117,8 +118,8 @@ class JointTrajectoryController(Controller):
         self.movers = chosen["command_joints"] or self.joints
         if len(self.movers) != len(self.joints):
             raise CommandError(
-                "parameter 'command_joints' has another length than 'joints'; passive joints are "
-                "not available here"
+                "parameter 'command_joints' differs in length from 'joints'; passive joints are "
+                "not supported"
             )
         for key in ("command_interfaces", "state_interfaces"):
             if not chosen[key] or not set(chosen[key]) <= set(KINDS):
@@ -126,11 +127,11 @@ class JointTrajectoryController(Controller):
                     f"parameter '{key}' is {chosen[key]}; choose from {', '.join(KINDS)}"
                 )
         if "position" not in chosen["state_interfaces"]:
-            raise CommandError("parameter 'state_interfaces' needs position")
+            raise CommandError("parameter 'state_interfaces' lacks position; add it")
         self.outputs, self.inputs = chosen["command_interfaces"], chosen["state_interfaces"]
         self.command_names = [f"{each}/{kind}" for kind in self.outputs for each in self.movers]
         self.state_names = [f"{each}/{kind}" for kind in self.inputs for each in self.joints]
-        # A speed or a force alone leads nowhere: what is missing to the position is added.
+        # A velocity or an effort alone does not lead to a position: a PID corrects the error.
         self.is_regulated = self.outputs in (["velocity"], ["effort"])
         return super().on_configure(state)
 
@@ -149,7 +150,7 @@ class JointTrajectoryController(Controller):
         return super().on_activate(state)
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """End the goal, and stay; speeds and forces end as their interfaces are taken back."""
+        """End the goal, and stay; velocities and efforts end as their interfaces are released."""
         self.end_goal(Result.INVALID_GOAL, "Current goal cancelled during deactivate transition.")
         if "position" in self.outputs:
             for joint, mover in zip(self.joints, self.movers, strict=True):
@@ -174,7 +175,7 @@ class JointTrajectoryController(Controller):
         self.is_holding = True
 
     def problem(self, msg: JointTrajectory) -> str:
-        """Return why a trajectory cannot be followed, or nothing."""
+        """Return why a trajectory cannot be followed; empty if it can."""
         if self.lifecycle_state.label != "active":
             return "Can't accept new action goals. Controller is not running."
         check = TrajectoryCheck(
@@ -268,7 +269,7 @@ class JointTrajectoryController(Controller):
             goal.end.set_result((code, text))
 
     def update(self, now: Time, period_sec: float) -> None:
-        """Move the joints on, unless they have left the trajectory."""
+        """Move the joints along the trajectory, unless they have deviated too far from it."""
         trajectory = self.trajectory
         if trajectory is None:
             return
@@ -296,7 +297,7 @@ class JointTrajectoryController(Controller):
     def is_left(
         self, trajectory: Trajectory, passed: float, error: Point, *, is_first: bool
     ) -> bool:
-        """Return whether joints are too far from the trajectory; end the goal that is over."""
+        """Return whether joints are too far from the trajectory; end a goal that is over."""
         if self.is_holding:
             return False
         late = passed - trajectory.end_sec
@@ -393,7 +394,7 @@ class JointTrajectoryController(Controller):
     def query(
         self, request: QueryTrajectoryState.Request, response: QueryTrajectoryState.Response
     ) -> QueryTrajectoryState.Response:
-        """Say where the joints are to be at a time."""
+        """Return the desired state of the joints at a time."""
         trajectory = self.trajectory
         if self.lifecycle_state.label != "active" or trajectory is None or not self.start_ns:
             response.message = "Can't sample trajectory. Controller is not active."

@@ -12,16 +12,16 @@ __all__ = ["Pid"]
 
 @dataclass
 class Pid:
-    """A regulator.
+    """A PID controller.
 
     Attributes:
-        p: What an error of the position adds.
-        i: What the sum of the errors adds.
-        d: What an error of the velocity adds.
-        least: The minimum of what the sum adds.
-        greatest: The maximum of what the sum adds.
-        forward: The share of the wanted velocity.
-        total: What the sum adds now.
+        p: The gain of the position error.
+        i: The gain of the integrated position error.
+        d: The gain of the velocity error.
+        least: The minimum of the integral term.
+        greatest: The maximum of the integral term.
+        forward: The gain of the desired velocity, which the caller adds.
+        total: The integral term.
     """
 
     p: float
@@ -34,7 +34,7 @@ class Pid:
 
     @classmethod
     def declared(cls, node: Node, joint: str) -> Pid:
-        """Return the regulator of a joint, by parameters that are declared for it."""
+        """Declare the parameters of a joint's controller, and return the controller."""
 
         def given(name: str, default: float) -> float:
             return float(node.declare_parameter(f"gains.{joint}.{name}", default).value)
@@ -54,7 +54,7 @@ class Pid:
         self.total = 0.0
 
     def output(self, error: float, speed_error: float, period_sec: float) -> float:
-        """Return the command, given the errors over a period; 0 for what is not measured yet."""
+        """Return the command for the errors over a period; 0 while they are not measured yet."""
         if not (math.isfinite(error) and math.isfinite(speed_error)):
             return 0.0
         self.total = min(max(self.total + self.i * error * period_sec, self.least), self.greatest)

@@ -1,4 +1,4 @@
-"""Trajectories of joints: what is commanded at a time, by splines through the given points."""
+"""Trajectories of joints: the commands at any time, by splines through the given points."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Point:
 
 
 class Trajectory:
-    """A way through points, which begins where the joints are.
+    """A path through points, which begins where the joints are.
 
     Args:
         points: The points, in the order of their times.
@@ -67,7 +67,7 @@ class Trajectory:
 
         Args:
             point: Where the joints are.
-            wraps: The joints that turn without end, for each of which the nearest way is taken.
+            wraps: Whether each joint turns without end, so that it takes the shortest way.
         """
         first = self.points[0]
         positions = [
@@ -89,7 +89,7 @@ class Trajectory:
             self.points.insert(0, start)
 
     def sample(self, time_sec: float) -> Point:
-        """Return where the joints are to be at a time."""
+        """Return the desired point at a time."""
         if time_sec >= self.end_sec:
             return self.points[-1].complete()
         if time_sec <= self.points[0].time_sec:
@@ -102,7 +102,7 @@ class Trajectory:
 
 
 def between(a: Point, b: Point, time_sec: float) -> Point:
-    """Return a point between two, by a polynomial through all that both know."""
+    """Interpolate between two points, by a polynomial through all values that both specify."""
     whole, passed = b.time_sec - a.time_sec, time_sec - a.time_sec
     has_velocity = bool(a.velocities and b.velocities)
     has_acceleration = has_velocity and bool(a.accelerations and b.accelerations)
@@ -126,7 +126,7 @@ def between(a: Point, b: Point, time_sec: float) -> Point:
 
 
 def cubic(a: tuple[float, float], b: tuple[float, float], t: float) -> list[float]:
-    """Return the factors of a cubic polynomial between two positions and velocities."""
+    """Return the coefficients of a cubic polynomial between two positions and velocities."""
     (start, start_speed), (end, end_speed) = a, b
     way = end - start
     return [
@@ -138,7 +138,7 @@ def cubic(a: tuple[float, float], b: tuple[float, float], t: float) -> list[floa
 
 
 def quintic(a: tuple[float, float, float], b: tuple[float, float, float], t: float) -> list[float]:
-    """Return the factors of a quintic polynomial between positions and two derivatives."""
+    """Return the coefficients of a quintic polynomial between positions and two derivatives."""
     (start, v0, a0), (end, v1, a1) = a, b
     way = end - start
     return [

@@ -32,7 +32,7 @@ class Tolerances:
 
     @classmethod
     def declared(cls, node: Node, joints: list[str]) -> Tolerances:
-        """Return tolerances by parameters that are declared for them."""
+        """Declare the parameters of the tolerances, and return the tolerances."""
 
         def given(name: str, default: float) -> float:
             return float(node.declare_parameter(f"constraints.{name}", default).value)
@@ -73,11 +73,11 @@ class Tolerances:
         )
 
     def on_the_way(self, error: Point) -> str:
-        """Return which joint is too far from the trajectory, or nothing."""
+        """Return which joint is too far from the trajectory; empty if none is."""
         return violation(self.path, error)
 
     def at_the_end(self, error: Point) -> str:
-        """Return which joint is too far from the end, or nothing."""
+        """Return which joint is too far from the end; empty if none is."""
         return violation(self.goal, error)
 
 
@@ -87,10 +87,10 @@ def chosen(usual: float, wanted: float) -> float:
 
 
 def violation(limits: Limits, error: Point) -> str:
-    """Return which joint exceeds a limit, or nothing."""
+    """Return which joint exceeds a limit; empty if none does."""
     for joint, (name, allowed) in enumerate(limits.items()):
         for kind, limit in zip(KINDS, allowed, strict=True):
             found = getattr(error, kind)
             if limit > 0 and found and not abs(found[joint]) <= limit:  # also if it is not measured
-                return f"{kind} of {name} are off by {found[joint]:f}, and may be by {limit:f}"
+                return f"{kind} of {name} are off by {found[joint]:f}; the limit is {limit:f}"
     return ""

@@ -38,7 +38,7 @@ def command_line_argument_parser(formatted_for_sphinx: bool = True) -> argparse.
     parser.add_argument(
         "variables",
         nargs=argparse.REMAINDER,
-        help="what to show, such as odometry.pose.pose; by default everything",
+        help="what to show, such as odometry.pose.pose; everything by default",
     )
     return parser
 

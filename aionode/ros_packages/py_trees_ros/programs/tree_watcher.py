@@ -36,7 +36,7 @@ def command_line_argument_parser(formatted_for_sphinx: bool = True) -> argparse.
         help="show who read and wrote the blackboard",
     )
     parser.add_argument(
-        "-b", "--blackboard-data", action="store_true", help="show the variables that are used"
+        "-b", "--blackboard-data", action="store_true", help="show the variables of the last tick"
     )
     parser.add_argument(
         "-s", "--statistics", action="store_true", help="show the times of the ticks"
