@@ -55,6 +55,10 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "nav2_map_server": {"map_server": "_map_server.map_server"},
+    "robot_localization": {
+        "ekf_node": "_robot_localization.ekf_node",
+        "ukf_node": "_robot_localization.ukf_node",
+    },
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "rosbridge_server": {"rosbridge_websocket": "_bridges.rosbridge_websocket"},
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},

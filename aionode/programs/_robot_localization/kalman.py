@@ -1,0 +1,385 @@
+"""The Kalman filters: the state of a robot in space, its prediction and its correction."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from aionode.programs._robot_localization.rotation import Array, matrix_of, wrapped
+
+__all__ = [
+    "ACCELERATION",
+    "ANGULAR",
+    "LINEAR",
+    "NAMES",
+    "ORIENTATION",
+    "POSE",
+    "POSITION",
+    "SIZE",
+    "START_VARIANCE",
+    "TWIST",
+    "Control",
+    "Ekf",
+    "Filter",
+    "Mask",
+    "Measurement",
+    "Ukf",
+]
+
+NAMES: Final = (
+    *("X", "Y", "Z", "ROLL", "PITCH", "YAW"),
+    *("X_VELOCITY", "Y_VELOCITY", "Z_VELOCITY"),
+    *("ROLL_VELOCITY", "PITCH_VELOCITY", "YAW_VELOCITY"),
+    *("X_ACCELERATION", "Y_ACCELERATION", "Z_ACCELERATION"),
+)
+"""What the state consists of: the pose in the world, the rest in the frame of the robot."""
+
+SIZE: Final = len(NAMES)
+POSITION: Final = slice(0, 3)
+ORIENTATION: Final = slice(3, 6)
+LINEAR: Final = slice(6, 9)
+ANGULAR: Final = slice(9, 12)
+ACCELERATION: Final = slice(12, 15)
+POSE: Final = slice(0, 6)
+TWIST: Final = slice(6, 12)
+
+ANGLES: Final = np.array([3 <= index < 6 for index in range(SIZE)])
+
+PROCESS_NOISE: Final = (
+    *(0.05, 0.05, 0.06, 0.03, 0.03, 0.06),
+    *(0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015),
+)
+"""How fast the variances grow without measurements, per second."""
+
+START_VARIANCE: Final = 1e-9
+LEAST_VARIANCE: Final = 1e-9
+"""The least variance of a measurement: none is exact, and the gain needs an inverse matrix."""
+
+Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.intp]
+
+# How a rotation about an axis begins: its derivative is this matrix times the rotation.
+ABOUT_X: Final = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+ABOUT_Z: Final = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+@dataclass
+class Control:
+    """What the robot was commanded, and how fast it follows.
+
+    Attributes:
+        mask: Which of the six velocities are commanded.
+        timeout_ns: How old a command may be; an older one counts as zero.
+        acceleration_limits: For each velocity, as the next three.
+        acceleration_gains: Acceleration for each unit of difference from the command.
+        deceleration_limits: For slowing down.
+        deceleration_gains: For slowing down.
+        twist: The command.
+        time_ns: When it came.
+    """
+
+    mask: Sequence[bool] = (False,) * 6
+    timeout_ns: int = 0
+    acceleration_limits: Sequence[float] = (1.0,) * 6
+    acceleration_gains: Sequence[float] = (1.0,) * 6
+    deceleration_limits: Sequence[float] = (1.0,) * 6
+    deceleration_gains: Sequence[float] = (1.0,) * 6
+    twist: Array = field(default_factory=lambda: np.zeros(6))
+    time_ns: int = 0
+
+    def acceleration(self, velocities: Array, now_ns: int) -> Array:
+        """Return the accelerations at which the robot follows the command."""
+        result = np.zeros(6)
+        is_old = now_ns - self.time_ns >= self.timeout_ns
+        for index in map(int, np.flatnonzero(self.mask)):
+            wanted = 0.0 if is_old else float(self.twist[index])
+            actual = float(velocities[index])
+            error = wanted - actual
+            # A command in the other direction is first a command to stop.
+            aim = wanted if abs(error) <= abs(wanted) + 0.01 else 0.0
+            gain, limit = self.acceleration_gains[index], self.acceleration_limits[index]
+            if abs(aim) < abs(actual):
+                gain, limit = self.deceleration_gains[index], self.deceleration_limits[index]
+            result[index] = min(max(gain * error, -limit), limit)
+        return result
+
+
+@dataclass
+class Measurement:
+    """What a sensor says of the state.
+
+    Attributes:
+        source: Its name, for diagnostics.
+        time_ns: When it was measured.
+        values: The state; only those of `mask` count.
+        covariance: How sure it is.
+        mask: What was measured.
+        threshold: At how many standard deviations from the estimate it is rejected.
+        command: The velocities that were commanded then.
+        command_ns: When that was.
+    """
+
+    source: str
+    time_ns: int
+    values: Array
+    covariance: Array
+    mask: Mask
+    threshold: float = math.inf
+    command: Array | None = None
+    command_ns: int = 0
+
+    def measured(self) -> tuple[Indices, Array]:
+        """Return which values are measured, and their covariance, whose diagonal is above 0."""
+        indices = np.flatnonzero(self.mask & np.isfinite(self.values))
+        noise = self.covariance[np.ix_(indices, indices)].copy()
+        np.fill_diagonal(noise, np.maximum(np.abs(noise.diagonal()), LEAST_VARIANCE))
+        return indices, noise
+
+
+class Filter(ABC):
+    """An estimate that measurements correct and time makes less certain.
+
+    Attributes:
+        state: The estimate.
+        covariance: How sure it is.
+        time_ns: For when it is.
+        is_initialized: Whether there was a measurement.
+        process_noise: How fast `covariance` grows, per second.
+        is_noise_dynamic: Whether the noise of the pose grows with the velocity.
+        control: What the robot was commanded.
+    """
+
+    def __init__(self) -> None:
+        self.process_noise: Array = np.diag(PROCESS_NOISE)
+        self.is_noise_dynamic = False
+        self.control = Control()
+        self.is_initialized = False
+        self.place(np.zeros(SIZE), np.eye(SIZE) * START_VARIANCE, 0)
+
+    def place(self, state: Array, covariance: Array, time_ns: int) -> None:
+        """Replace the estimate."""
+        self.state, self.covariance, self.time_ns = state, covariance, time_ns
+
+    def process(self, measurement: Measurement) -> bool:
+        """Predict the state at the time of a measurement, and correct it.
+
+        Returns:
+            Whether the measurement was used: it may be too far from the estimate.
+        """
+        if not self.is_initialized:
+            measured, noise = measurement.measured()
+            self.state[measured] = measurement.values[measured]
+            self.covariance[np.ix_(measured, measured)] = noise
+            self.is_initialized = True
+            self.time_ns = measurement.time_ns
+            return True
+        if measurement.time_ns > self.time_ns:
+            self.predict(measurement.time_ns)
+        return self.correct(measurement)
+
+    def predict(self, time_ns: int) -> None:
+        """Move the estimate to another time."""
+        seconds = (time_ns - self.time_ns) / 1e9
+        accelerations = self.control.acceleration(self.state[TWIST], time_ns)
+        self._predict(seconds, accelerations)
+        self.state[ORIENTATION] = wrapped(self.state[ORIENTATION])
+        self.time_ns = time_ns
+
+    def correct(self, measurement: Measurement) -> bool:
+        """Correct the estimate; return whether the measurement was used."""
+        measured, noise = measurement.measured()
+        if not len(measured):
+            return False
+        before = self.state, self.covariance
+        self.state, self.covariance = self.state.copy(), self.covariance.copy()
+        try:
+            is_used = self._correct(measured, measurement.values[measured], noise, measurement)
+        except np.linalg.LinAlgError:  # covariances that are none
+            is_used = False
+        if is_used and np.isfinite(self.state).all() and np.isfinite(self.covariance).all():
+            self.state[ORIENTATION] = wrapped(self.state[ORIENTATION])
+            return True
+        self.state, self.covariance = before
+        return False
+
+    def _noise(self) -> Array:
+        """Return the process noise; of a robot that stands still the pose gets no less certain."""
+        if not self.is_noise_dynamic:
+            return self.process_noise
+        noise = self.process_noise.copy()
+        noise[POSE, POSE] *= float(self.state[TWIST] @ self.state[TWIST])
+        return noise
+
+    def _controlled(self, state: Array, accelerations: Array, seconds: float) -> Array:
+        """Return a state with the accelerations that follow from the command."""
+        result = state.copy()
+        result[ANGULAR] += accelerations[3:] * seconds
+        mask = np.array(self.control.mask[:3], dtype=bool)
+        result[ACCELERATION] = np.where(mask, accelerations[:3], result[ACCELERATION])
+        return result
+
+    @abstractmethod
+    def _predict(self, seconds: float, accelerations: Array) -> None:
+        """Move state and covariance by a time."""
+
+    @abstractmethod
+    def _correct(
+        self, measured: Indices, values: Array, noise: Array, measurement: Measurement
+    ) -> bool:
+        """Correct state and covariance, unless the measurement is too far from the estimate."""
+
+
+def is_near(innovation: Array, inverse: Any, threshold: float) -> bool:
+    """Return whether a measurement is within so many standard deviations of the estimate."""
+    return float(innovation @ inverse @ innovation) < threshold * threshold
+
+
+def transfer(state: Array, seconds: float) -> Array:
+    """Return the matrix that moves a state by a time."""
+    roll, pitch, yaw = state[ORIENTATION]
+    rotation = matrix_of(roll, pitch, yaw)
+    result = np.eye(SIZE)
+    result[POSITION, LINEAR] = rotation * seconds
+    result[POSITION, ACCELERATION] = rotation * (0.5 * seconds * seconds)
+    result[ORIENTATION, ANGULAR] = angle_rates(roll, pitch) * seconds
+    result[LINEAR, ACCELERATION] = np.eye(3) * seconds
+    return result
+
+
+def angle_rates(roll: float, pitch: float) -> Array:
+    """Return the matrix by which angular velocities become changes of roll, pitch and yaw."""
+    sr, cr = math.sin(roll), math.cos(roll)
+    tp, cpi = math.tan(pitch), 1.0 / math.cos(pitch)
+    return np.array([[1.0, sr * tp, cr * tp], [0.0, cr, -sr], [0.0, sr * cpi, cr * cpi]])
+
+
+def jacobian(state: Array, seconds: float) -> Array:
+    """Return the derivative of the moved state by the state."""
+    roll, pitch, yaw = state[ORIENTATION]
+    result = transfer(state, seconds)
+    rotation = matrix_of(roll, pitch, yaw)
+    path = state[LINEAR] * seconds + state[ACCELERATION] * (0.5 * seconds * seconds)
+    about_y = np.array(
+        [[0.0, 0.0, math.cos(yaw)], [0.0, 0.0, math.sin(yaw)], [-math.cos(yaw), -math.sin(yaw), 0]]
+    )
+    result[POSITION, 3] = rotation @ ABOUT_X @ path
+    result[POSITION, 4] = about_y @ rotation @ path
+    result[POSITION, 5] = ABOUT_Z @ rotation @ path
+
+    sr, cr = math.sin(roll), math.cos(roll)
+    tp, cpi = math.tan(pitch), 1.0 / math.cos(pitch)
+    _, about_pitch, about_yaw = state[ANGULAR] * seconds
+    by_roll = cr * about_pitch - sr * about_yaw
+    by_pitch = sr * about_pitch + cr * about_yaw
+    result[ORIENTATION, 3] += (tp * by_roll, -by_pitch, cpi * by_roll)
+    result[ORIENTATION, 4] += (cpi * cpi * by_pitch, 0.0, tp * cpi * by_pitch)
+    return result
+
+
+class Ekf(Filter):
+    """The extended filter: the motion is linear near the estimate."""
+
+    def _predict(self, seconds: float, accelerations: Array) -> None:
+        derivative = jacobian(self.state, seconds)
+        noise = self._noise()
+        matrix = transfer(self.state, seconds)
+        self.state = matrix @ self._controlled(self.state, accelerations, seconds)
+        self.covariance = derivative @ self.covariance @ derivative.T + seconds * noise
+
+    def _correct(
+        self, measured: Indices, values: Array, noise: Array, measurement: Measurement
+    ) -> bool:
+        cross = self.covariance[:, measured]
+        inverse = np.linalg.inv(cross[measured] + noise)
+        gain = cross @ inverse
+        innovation = values - self.state[measured]
+        innovation = np.where(ANGLES[measured], wrapped(innovation), innovation)
+        if not is_near(innovation, inverse, measurement.threshold):
+            return False
+        self.state = self.state + gain @ innovation
+        left = np.eye(SIZE)
+        left[:, measured] -= gain
+        # Joseph's form, which stays symmetric and positive.
+        self.covariance = left @ self.covariance @ left.T + gain @ noise @ gain.T
+        return True
+
+
+class Ukf(Filter):
+    """The unscented filter: points around the estimate move, and their mean is the next one.
+
+    Args:
+        alpha: How far the points are from the estimate.
+        kappa: The same, added to the number of variables.
+        beta: What is known of the distribution; 2 fits a normal one.
+
+    Raises:
+        ValueError: There are no points around the estimate.
+    """
+
+    def __init__(self, alpha: float = 0.001, kappa: float = 0.0, beta: float = 2.0) -> None:
+        self.scale = alpha * alpha * (SIZE + kappa)
+        if not 0.0 < self.scale < math.inf:
+            problem = f"alpha² ({SIZE} + kappa) is {self.scale:g}; it has to be above 0"
+            raise ValueError(problem)
+        first = (self.scale - SIZE) / self.scale
+        self.weights = np.full(2 * SIZE + 1, 0.5 / self.scale)
+        self.weights[0] = first
+        self.covariance_weights = self.weights.copy()
+        self.covariance_weights[0] = first + 1.0 - alpha * alpha + beta
+        super().__init__()
+
+    def around(self) -> Array:
+        """Return the points around the estimate, one a row."""
+        scaled = self.scale * (self.covariance + self.covariance.T) / 2
+        try:
+            root = np.linalg.cholesky(scaled)
+        except np.linalg.LinAlgError:  # rounded down below 0
+            values, vectors = np.linalg.eigh(scaled)
+            root = vectors * np.sqrt(np.maximum(values, 0.0))
+        return np.vstack([self.state, self.state + root.T, self.state - root.T])
+
+    def mean(self, points: Array, is_angle: Mask) -> Array:
+        """Return the weighted mean of points."""
+        straight = self.weights @ points
+        around = np.arctan2(self.weights @ np.sin(points), self.weights @ np.cos(points))
+        return np.where(is_angle, around, straight)
+
+    def _predict(self, seconds: float, accelerations: Array) -> None:
+        points = np.array(
+            [
+                transfer(point, seconds) @ self._controlled(point, accelerations, seconds)
+                for point in self.around()
+            ]
+        )
+        self.state = self.mean(points, ANGLES)
+        off = points - self.state
+        off[:, ANGLES] = wrapped(off[:, ANGLES])
+        self.covariance = (self.covariance_weights * off.T) @ off + seconds * self._noise()
+
+    def _correct(
+        self, measured: Indices, values: Array, noise: Array, measurement: Measurement
+    ) -> bool:
+        points = self.around()
+        is_angle = ANGLES[measured]
+        predicted = self.mean(points[:, measured], is_angle)
+        off = points[:, measured] - predicted
+        off[:, is_angle] = wrapped(off[:, is_angle])
+        state_off = points - self.state
+        state_off[:, ANGLES] = wrapped(state_off[:, ANGLES])
+        spread = (self.covariance_weights * off.T) @ off + noise
+        cross = (self.covariance_weights * state_off.T) @ off
+        inverse = np.linalg.inv(spread)
+        innovation = values - predicted
+        innovation = np.where(is_angle, wrapped(innovation), innovation)
+        if not is_near(innovation, inverse, measurement.threshold):
+            return False
+        gain = cross @ inverse
+        self.state = self.state + gain @ innovation
+        self.covariance = self.covariance - gain @ spread @ gain.T
+        return True
