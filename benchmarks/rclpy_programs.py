@@ -1,7 +1,8 @@
 """The same rclpy programs on aionode and on ROS 2's rclpy: how long a message takes.
 
 One program publishes to a callback of its own node a hundred times a second (``in process``); two
-programs send a small message to and fro a hundred times a second (``two processes``). Each runs
+programs send a small message to and fro a hundred times a second (``two processes``). A third one
+ends as soon as its node has spun once (``start``). Each runs
 unmodified on ``aionode run`` and on rclpy with its default and its events executor, side by side
 and measured in turns, so that other load affects all of them.
 
@@ -36,6 +37,9 @@ else:
 node = rclpy.create_node(f"{role}_{kind}")
 executor = Executor()
 executor.add_node(node)
+if role == "start":
+    executor.spin_once(timeout_sec=0)
+    os._exit(0)
 there, back = ("same", "same") if role == "alone" else ("ping", "pong")
 if role == "echo":
     pongs = node.create_publisher(String, back, 10)
@@ -70,7 +74,7 @@ os._exit(0)
 
 MESSAGES = 50  # of one turn
 OURS, DEFAULT, EVENTS = "aionode run", "rclpy, default executor", "rclpy, events executor"
-AIMS = (("in process", DEFAULT, 0.5), ("two processes", EVENTS, 0.8))
+AIMS = (("start", DEFAULT, 1.0), ("in process", DEFAULT, 0.5), ("two processes", EVENTS, 0.8))
 
 
 def main() -> None:
@@ -96,6 +100,8 @@ def main() -> None:
             for what, roles in (("in process", ("alone",)), ("two processes", ("echo", "player")))
             for name, median in measure(commands, roles, turns).items()
         }
+        for name, median in measure_start(commands, turns).items():
+            medians["start", name] = median
     print("medians in µs" + "".join(f"{name:>26}" for name in commands))
     for what, base, aim in AIMS:
         row = "".join(f"{medians[what, name] / 1e3:>26.0f}" for name in commands)
@@ -123,6 +129,18 @@ def measure(
             for each in programs:
                 each.kill()
                 each.wait()
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
+def measure_start(commands: dict[str, tuple[str, ...]], turns: int) -> dict[str, float]:
+    """Return the median time of each candidate from its start until it has spun once, in ns."""
+    times: dict[str, list[int]] = {name: [] for name in commands}
+    for turn in range(turns + 1):
+        for name, command in commands.items():
+            began = time.perf_counter_ns()
+            start(command, "start", 60).communicate()
+            if turn:  # the first one fills caches
+                times[name].append(time.perf_counter_ns() - began)
     return {name: statistics.median(found) for name, found in times.items()}
 
 

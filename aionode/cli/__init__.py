@@ -32,20 +32,37 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: The arguments without the program name; defaults to those of the process.
     """
-    is_run = sys.argv[1:2] == ["run"]  # the program that is run gets arguments of its own
+    is_run = argv is None and sys.argv[1:2] == ["run"]
     try:
         # Imported here so that Ctrl-C during the import leaves no traceback either.
-        from aionode.cli import _main
+        if is_run:
+            from aionode.cli._support.programs import module_of
 
-        status = _main.main(argv)
-        # Only if this is the process's main program, and not after `run`, whose threads are the
-        # user's: otherwise Python would wait for threads and exit handlers after the answer is
-        # printed.
-        if argv is None and not is_run:
-            from aionode.cli._support.exit import leave
+            module = module_of(sys.argv[2:])
+        else:
+            module = None
+        if module is None:
+            from aionode.cli import _main
 
-            leave(status)
+            status = _main.main(argv)
+            # Only if this is the process's main program, and not after `run`, whose threads are the
+            # user's: otherwise Python would wait for threads and exit handlers after the answer is
+            # printed.
+            if argv is None and not is_run:
+                from aionode.cli._support.exit import leave
+
+                leave(status)
+            return status
     except KeyboardInterrupt:
         return 130  # the exit status that shells use for Ctrl-C
-    else:
-        return status
+    execute(*module)
+    return 0
+
+
+def execute(module: str, *arguments: str) -> None:
+    """Run a module in this process like ``python -m`` in a new one."""
+    import runpy
+
+    sys.argv[1:] = arguments
+    sys.path[0] = ""  # the current folder
+    runpy.run_module(module, run_name="__main__")

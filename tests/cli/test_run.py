@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from aionode.cli._main import main
-from aionode.cli._nouns.run import Programs
+from aionode.cli._support.programs import Programs, module_of
 from aionode.errors import CommandError, ExecutableNotFoundError, PackageNotFoundError
 from aionode.system.node_source import node_maker
 from tests.support.without_ros import without_ros
@@ -192,6 +192,42 @@ def test_a_package_and_its_executable_are_a_program(workspace: Path) -> None:
         *("-m", "aionode.rclpy", "--workspace", str(package.parent)),
         *("--path", str(package), "-m", "my_robot.mover:main", "-x", "--ros-args"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("args", "module"),
+    [
+        (["my_robot", "mover", "-x"], "aionode.rclpy"),
+        (["src/my_robot/my_robot/mover.py", "-x"], "aionode.rclpy"),
+        (["demo_nodes_py", "talker", "-x"], "aionode.programs"),
+    ],
+)
+@pytest.mark.usefixtures("workspace")
+def test_a_program_in_python_is_a_module_with_arguments(args: list[str], module: str) -> None:
+    """So that it is executed at once, in the process of the command."""
+    found = module_of(args)
+
+    assert found is not None
+    assert (found[0], found[-1]) == (module, "-x")
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        [],
+        ["--help"],
+        ["--rclpy", "src/my_robot/my_robot/mover.py"],
+        ["my_robot.mover:main"],
+        ["my_robot", "movre"],
+        ["my_robto", "mover"],
+        ["src/my_robot/my_robot/cli_run_nodes_of_package.py"],
+        ["missing.py"],
+    ],
+)
+@pytest.mark.usefixtures("workspace")
+def test_what_is_no_program_in_python_is_left_to_the_command_line(args: list[str]) -> None:
+    """It parses options, and it reports errors."""
+    assert module_of(args) is None
 
 
 @pytest.mark.parametrize("place", [".", "src", "src/my_robot", "src/my_robot/my_robot"])

@@ -91,6 +91,17 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
     assert done.stderr == ""
 
 
+def test_a_program_runs_at_once_in_the_process_of_the_command(folder: Path) -> None:
+    """Without the modules of the command line, which take as long to load as a small program."""
+    (folder / "own.py").write_text(
+        "import sys, rclpy\nprint(sys.argv, [n for n in sys.modules if n in ('click', 'runpy')])\n"
+    )
+
+    done = run(folder, "run", "own.py", "--help", module="aionode", fresh=True)
+
+    assert done.stdout == "['own.py', '--help'] ['runpy']\n"
+
+
 def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
     """Like ``python -m``, with the whole path in its arguments."""
     done = run(folder, "run", "-m", "program", "exit", module="aionode")
