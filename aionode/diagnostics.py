@@ -56,7 +56,7 @@ Run: TypeAlias = "Callable[[Any], Any]"
 
 
 class StatusMethods:
-    """Fills a status: the methods of `DiagnosticStatusWrapper`, for the messages of either face."""
+    """Fills a status: the methods of `DiagnosticStatusWrapper`, for the messages of either API."""
 
     level: Any
     message: str
@@ -264,7 +264,7 @@ class FrequencyStatus(DiagnosticTask):
             (start_ns, before), count = self._marks[0], self.count
             self._marks.append((now_ns, count))
         events, window = count - before, (now_ns - start_ns) / 1e9
-        if window < 0:  # simulated time begins again
+        if window < 0:  # simulated time was set back
             self.clear()
         frequency = events / window if window > 0 else 0.0
         bound, tolerance = self.params.freq_bound, self.params.tolerance
@@ -462,14 +462,14 @@ class DiagnosedPublisher(TopicDiagnostic):
 
 @dataclass(slots=True)
 class Named:
-    """A task as an updater has it."""
+    """A task of an updater, with the name of its status."""
 
     name: str
     run: Run = field(repr=False)
 
 
 class UpdaterBase:
-    """What updaters of both faces have; see `Updater`."""
+    """The base class of the updaters of both APIs; see `Updater`."""
 
     _wrapper_class: ClassVar[Any] = DiagnosticStatusWrapper
     _status_class: ClassVar[Any] = DiagnosticStatus
@@ -518,7 +518,7 @@ class UpdaterBase:
         """
         if len(args) == 1:
             task = Named(args[0].getName(), args[0].run)
-            if hasattr(args[0], "use_clock"):  # those of others need not have it
+            if hasattr(args[0], "use_clock"):  # tasks of other classes may lack it
                 args[0].use_clock(self.node.get_clock())
         else:
             task = Named(*args)
@@ -574,7 +574,7 @@ class UpdaterBase:
         )
 
     def _failed(self, task: Named, error: Exception) -> Any:
-        """Return the status of a task that has raised: the others are published all the same."""
+        """Return the status of a task that has raised; the others are published as usual."""
         status = self._begun(task)
         text = str(error) or "no answer in time"
         status.message = f"the task has failed: {type(error).__name__}: {text}"
@@ -592,8 +592,8 @@ class UpdaterBase:
         if not (self.hwid or self.warn_nohwid_done) and all(each.level == OK for each in statuses):
             self.warn_nohwid_done = True
             self.node.get_logger().warning(
-                "diagnostic_updater: no hardware id was set; call setHardwareID, with 'none' for "
-                "what has no device"
+                "diagnostic_updater: no hardware id was set; call setHardwareID, with 'none' if "
+                "there is no device"
             )
         self.publish(statuses)
         wanted = self.node.get_parameter(self.period_parameter).value
@@ -628,7 +628,7 @@ class Updater(UpdaterBase):
                 filled = task.run(status)
                 if inspect.isawaitable(filled):
                     filled = await self._in_time(filled)
-            except Exception as error:  # noqa: BLE001  # of the user's task: it is told and logged
+            except Exception as error:  # noqa: BLE001  # the user's task: reported and logged
                 filled = self._failed(task, error)
             statuses.append(status if filled is None else filled)
         self._finish(statuses)

@@ -96,7 +96,7 @@ class NodeInfo(Struct, frozen=True):
 
 
 class Offered(Struct, frozen=True):
-    """What there is in a graph, by name.
+    """The contents of a graph, by name.
 
     Attributes:
         nodes: Full names of nodes.

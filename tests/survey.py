@@ -176,7 +176,7 @@ def main() -> int:
     parser.add_argument("repositories", type=Path, help="a list of owner/name@commit")
     parser.add_argument("folder", type=Path, help="where their clones are, or shall be")
     parser.add_argument("--python", default=sys.executable, help="the Python of another aionode")
-    parser.add_argument("--launch-files", type=int, help="at most so many of each repository")
+    parser.add_argument("--launch-files", type=int, help="maximum of each repository")
     parser.add_argument("--only", choices=("imports", "launch", "skip-missing"))
     arguments = parser.parse_args()
     aionode = Aionode(arguments.python)

@@ -13,7 +13,7 @@ __all__ = ["ParameterModule", "parameter_modules"]
 
 
 class ParameterModule(NamedTuple):
-    """Where such a module comes from.
+    """The source of a parameter module.
 
     Attributes:
         file: The YAML file that describes the parameters.

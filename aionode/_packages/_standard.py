@@ -19,7 +19,7 @@ __all__ = [
 ]
 
 SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
-"""Where the data of packages lies of which aionode has programs, such as launch files."""
+"""The folder with the data, such as launch files, of the packages whose programs aionode has."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "controller_manager": {

@@ -50,7 +50,7 @@ nanoseconds.
 """
 
 AGAIN_SEC: Final = 0.001
-"""After how long a signal that interrupted such a step is sent again."""
+"""The delay before a signal that interrupted such a step is sent again."""
 
 STOPS: list[Callable[[], bool]] = []
 """Functions that send the stops of open leases, and return whether there were any.

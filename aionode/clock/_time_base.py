@@ -38,9 +38,9 @@ process_ns = time.process_time_ns  # likewise; that of all threads
 
 
 def thread_waited_ns() -> int | None:
-    """Return for how long the current thread was ready to run and had no processor.
+    """Return how long the current thread was ready to run but had no processor.
 
-    None where the system does not tell: it needs Linux with its statistics of the scheduler.
+    None where the system does not say: it needs Linux with scheduler statistics.
     """
     try:
         file = os.open("/proc/thread-self/schedstat", os.O_RDONLY)

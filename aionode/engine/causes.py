@@ -47,7 +47,7 @@ MOST_KEPT: Final = 4096
 """How many sent items, and how many runs, a context keeps: about 2 MB of each."""
 
 MOST_SENDERS: Final = 1024
-"""For how many publishers, clients and services the last item is kept, however old."""
+"""Maximum number of publishers, clients and services whose last item is kept, however old."""
 
 MOST_CAUSES: Final = 8
 """Maximum number of causes of an item; the latest are kept."""

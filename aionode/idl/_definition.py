@@ -62,7 +62,7 @@ class MemberText:
         constant: Whether it is a constant.
         line: Line number, from 1.
         column: Column of its name, from 1.
-        comment: What is said of it, on one line.
+        comment: Its comment, on one line.
     """
 
     type: TypeText

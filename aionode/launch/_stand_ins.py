@@ -83,7 +83,7 @@ def with_stand_ins(run: Callable[[], T]) -> T:
             is_wanted = package is not None and stand_in(package) is not None
             if not is_wanted or len(FINDER.packages) >= MAX_MODULES or package in FINDER.packages:
                 raise
-            assert package is not None  # noqa: S101  # as it is wanted
+            assert package is not None  # noqa: S101  # it is wanted
             FINDER.packages.add(package)
             if FINDER not in sys.meta_path:
                 sys.meta_path.append(FINDER)

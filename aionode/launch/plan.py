@@ -25,7 +25,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Missing:
-    """What is not here, so that what needs it is left out.
+    """A missing package, file or executable; whatever needs it is left out.
 
     Attributes:
         name: Its name.

@@ -48,7 +48,7 @@ REFUSALS: Final = (
     EntityInactiveError,
     MessageError,
 )
-"""What publishing a command raises once the robot is stopped, or if it cannot be sent."""
+"""The exceptions raised by publishing a command after the robot stopped, or if it is invalid."""
 
 
 class ActorStats:

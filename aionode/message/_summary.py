@@ -28,7 +28,7 @@ HEAD: Final = 8
 """Elements that are shown of an array with more than are shown whole."""
 
 PIECES: Final = 2000
-"""Values that are looked at before a smaller form is tried."""
+"""Maximum values to visit before a shorter form is tried."""
 
 
 class TooLongError(Exception):
@@ -39,9 +39,9 @@ class Detail(Struct):
     """How much of a message is shown.
 
     Attributes:
-        elements: Arrays of at most so many elements are shown whole.
-        characters: Strings of at most so many characters are shown whole.
-        left: Values that there is still room for.
+        elements: Maximum elements of an array that is shown whole.
+        characters: Maximum characters of a string that is shown whole.
+        left: The number of values for which there is still room.
     """
 
     elements: int

@@ -61,7 +61,7 @@ FACTORS: Final[dict[str, tuple[float, float]]] = {
 """The factors of each key for the linear and the angular speed."""
 
 HELP_AFTER: Final = 15
-"""After how many changes of the speeds the help is shown again, as it has scrolled away."""
+"""The number of speed changes after which the help, which has scrolled away, is shown again."""
 
 REPEAT_SEC: Final = 0.1
 """Interval at which the current command is published."""

@@ -35,7 +35,7 @@ FACTS: Final[dict[str, Any]] = {
     "sys.platform": sys.platform,
     "os.name": os.name,
 }
-"""What conditions compare to import what this Python or this system has."""
+"""The values that conditions around imports compare, for this Python and this system."""
 
 COMPARISONS: Final[dict[type[ast.cmpop], Callable[[Any, Any], Any]]] = {
     ast.Eq: operator.eq,
@@ -137,13 +137,13 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
 
 @dataclass
 class Use:
-    """What is known of a file.
+    """The findings about a file.
 
     Attributes:
         file: The file.
         is_needed: Whether it is a program, or a program cannot do without it.
         as_program: Its imports, if it is run itself; None for a file that was not named.
-        as_module: Its imports, for each program that imports it: they may lie beside that.
+        as_module: Its imports, for each program that imports it: they may lie beside the program.
     """
 
     file: Path

@@ -65,6 +65,6 @@ PLACES: Final = {
     "SystemHealth": "_status",
     "System": "_system",
 }
-"""The module of each name: `aionode run` finds nodes by `node_source`, and needs none of these."""
+"""The module of each name, imported on first use, as `aionode run` needs only `node_source`."""
 
 __getattr__ = imported_on_first_use(__name__, PLACES, "system")

@@ -23,7 +23,7 @@ DEPTH = 100
 """Maximum queued messages of each topic, as in tf2."""
 
 MAX_SENDERS = 1_000
-"""For how many publishers the node name is remembered."""
+"""Maximum number of publishers whose node name is remembered."""
 
 
 class TransformListener:

@@ -79,7 +79,7 @@ def table(lines: list[str]) -> str:
             BEGIN,
             f"On {os.cpu_count()} cores of {platform.system()}, {JOBS} attacks at once.",
             "",
-            "| who | attack | tries | held | longest gap | most memory | what was said first |",
+            "| who | attack | tries | held | longest gap | most memory | first log line |",
             "| --- | --- | ---: | --- | ---: | ---: | --- |",
             *lines,
             END,

@@ -51,14 +51,12 @@ def all_attacks() -> list[Attack]:
     """Return all attacks, each with the environment that it needs."""
     rules = AccessControl()
     return [
-        Attack("none: what the table compares with", "nobody", "wait", pair()),
+        Attack("none: the baseline", "nobody", "wait", pair()),
         *attacks_on_gateway(),
         Attack("random bytes to their ports", "outsider", "send_garbage", pair(), short=True),
+        Attack("silent connections to their ports", "outsider", "keep_connections", pair()),
         Attack(
-            "connections to their ports that say nothing", "outsider", "keep_connections", pair()
-        ),
-        Attack(
-            "takes all connect slots, and pretends 200 sessions",
+            "takes all connect slots, and announces 200 false sessions",
             "other user",
             "pretend_sessions",
             pair(),
@@ -85,13 +83,13 @@ def all_attacks() -> list[Attack]:
         Attack("ACKNACK of any numbers", "member", "send_absurd_submessages", pair()),
         Attack("malformed messages", "member", "send_damaged", pair(), short=True),
         Attack(
-            "a parameter of 100 kB, asked for 40 000 times at once",
+            "a parameter of 100 kB, requested 40 000 times at once",
             "member",
             "ask_for_one_name",
             pair(parameter_size=100_000),
         ),
         Attack(
-            "every built-in service, asked for as much as fits into a request",
+            "every built-in service, with requests as large as possible",
             "member",
             "ask_everything",
             pair(parameter_size=100),
@@ -105,7 +103,7 @@ def all_attacks() -> list[Attack]:
             6.0,
         ),
         Attack(
-            "asks for what is kept for late readers, and reads nothing (queues of 4 MiB)",
+            "asks for the messages kept for late readers, and reads nothing (queues of 4 MiB)",
             "member",
             "ask_and_read_nothing",
             pair(env=SMALL_QUEUES, publish=kept()),
@@ -141,12 +139,8 @@ def all_attacks() -> list[Attack]:
             "describe_large",
             pair(curious=True),
         ),
-        Attack(
-            "escapes of terminals in names", "member", "announce_escapes", pair(), 8.0, LISTS, 3.0
-        ),
-        Attack(
-            "2000 subscriptions with QoS that does not fit", "member", "subscribe_oddly", pair()
-        ),
+        Attack("terminal escapes in names", "member", "announce_escapes", pair(), 8.0, LISTS, 3.0),
+        Attack("2000 subscriptions with incompatible QoS", "member", "subscribe_oddly", pair()),
         Attack(
             "5000 subscriptions of one topic",
             "member",
@@ -167,16 +161,16 @@ def all_attacks() -> list[Attack]:
 def attacks_on_gateway() -> list[Attack]:
     """Return the attacks of clients on a gateway in the process of the first node."""
     tries = {
-        "guess_tokens": ("tries tokens as fast as they are judged, at a gateway", "outsider"),
+        "guess_tokens": ("tries tokens at a gateway, as fast as it checks them", "outsider"),
         "keep_waiting": ("500 connections to a gateway that send a byte at a time", "outsider"),
         "send_tiny_parts": ("pings, empty frames, parts and chunks to a gateway", "client"),
-        "send_bombs": ("JSON of 1 MB that is made to cost, to a gateway", "client"),
+        "send_bombs": ("1 MB of JSON that is expensive to parse, to a gateway", "client"),
         "drive_twice": ("two programs of one identity drive through a gateway at once", "client"),
-        "drive_late": ("commands behind what a gateway refuses, which wait there", "client"),
-        "take_all_places": ("a viewer of a gateway that takes all places there are", "client"),
+        "drive_late": ("commands that wait at a gateway behind what it refuses", "client"),
+        "take_all_places": ("a viewer that takes all connections of a gateway", "client"),
         "load_images": ("a page of another origin with images that have wrong tokens", "outsider"),
         "read_hidden": ("asks parameter services of a gateway for what its policy hides", "client"),
-        "read_nothing": ("20 clients of a gateway that ask for much and read nothing", "client"),
+        "read_nothing": ("20 clients of a gateway that request much and read nothing", "client"),
     }
     return [
         *(
@@ -184,7 +178,7 @@ def attacks_on_gateway() -> list[Attack]:
             for program, (name, who) in tries.items()
         ),
         Attack(
-            "commands to a gateway that stands still for 0.8 s again and again",
+            "commands to a gateway that freezes for 0.8 s repeatedly",
             "client",
             "drive_frozen",
             pair(gateway=True),

@@ -25,7 +25,7 @@ with contextlib.suppress(ImportError):  # on Windows
 __all__ = ["FolderLock"]
 
 LOCKS: Final = Path("/proc/locks")
-"""Where Linux lists locks and their processes."""
+"""The file in which Linux lists locks and their processes."""
 
 
 class FolderLock:

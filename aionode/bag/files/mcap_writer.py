@@ -122,7 +122,7 @@ class ChunkWriter:
         self.start_ns = 2**64 - 1
         self.end_ns = 0
         self.entries: dict[int, list[int]] = {}
-        """For each channel the time and the offset of each message, in one list."""
+        """The time and the offset of each message, in one list for each channel."""
         self.largest: bytes | memoryview = b""
 
     def add_record(self, data: bytes) -> None:

@@ -32,7 +32,7 @@ TYPES: Final = {
     "service": ("service", "srv"),
     "action": ("action", "action"),
 }
-"""For each noun, what its types are called, and the part of type names that identifies them."""
+"""The word for the types of each noun, and the part of type names that identifies them."""
 
 AnswerT = TypeVar("AnswerT")
 

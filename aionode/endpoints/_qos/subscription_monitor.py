@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["MonitoredReader", "SubscriptionMonitor"]
 
 REMEMBERED_LIFESPANS = 1024
-"""For how many publishers a subscription remembers the lifespan."""
+"""Maximum number of publishers whose lifespan a subscription remembers."""
 
 
 class MonitoredReader(Protocol):

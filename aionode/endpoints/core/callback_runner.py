@@ -61,7 +61,7 @@ REPORT_INTERVAL_NS = 1_000_000_000
 
 
 LOOKED_AT_NS = 1_000_000_000
-"""From how long on a callback that hardly ran may have been stopped in a debugger."""
+"""The duration from which a callback that hardly ran may have been stopped in a debugger."""
 
 
 class CallbackContext(Struct, frozen=True):
@@ -645,7 +645,7 @@ def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # 
     if not isinstance(concurrent, int):
         raise TypeError(
             f"{subject}: concurrent={brief(concurrent)}; use False (one at a time), True (any "
-            "number) or a number (at most so many at once)"
+            "number) or a number (the maximum at once)"
         )
     if concurrent < 1:
         raise ValueError(

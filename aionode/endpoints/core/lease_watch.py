@@ -28,7 +28,7 @@ AGAIN_S: Final = 0.01
 """Time between two checks while a time to live has run out."""
 
 REPEAT_S: Final = 0.2
-"""How long a stop is sent again and again if the loop does not take over."""
+"""How long a stop is sent repeatedly if the loop does not take over."""
 
 STOPPED: Final = "the process was about to end or be suspended"
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Shutdown"]
 
 NOTICE_S = 0.3
-"""After how long the log says what a shutdown is waiting for, in seconds of real time."""
+"""Seconds of real time after which the log says what a shutdown is waiting for."""
 
 CALLBACKS_S = 5.0
 """How long the shutdown of a node waits for its callbacks."""

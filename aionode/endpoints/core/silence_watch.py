@@ -48,7 +48,7 @@ SILENCE_SEC = 0.3
 """Default for the longest silence of a topic: three commands at 10 Hz."""
 
 NOTICE_S = 0.3
-"""After how long a cancelled callback that delays `on_silence` is named in the log."""
+"""Time after which a cancelled callback that delays `on_silence` is named in the log."""
 
 MOMENT_S = 0.05
 """Time after a publisher leaves until it is clear whether its whole process has gone."""

@@ -12,7 +12,7 @@ INTERVAL_NS = 5_000_000
 """Maximum age of a reading: it costs a microsecond, too much for each callback."""
 
 WAITS_INTERVAL_NS = 50_000_000
-"""Maximum age of the time for which the thread has waited: the system has it in a file."""
+"""Maximum age of the reading of how long the thread has waited, which comes from a file."""
 
 
 class ThreadTime:
@@ -20,7 +20,7 @@ class ThreadTime:
 
     The time is read after a callback, never before it, so that no message waits for the reading.
     Between the reading and the next callback the loop mostly sleeps, which takes no thread time;
-    what else it runs counts as well, so that a wait in a callback right after may not be told.
+    whatever else it runs counts as well, so a wait in the callback right after may go unnoticed.
 
     Attributes:
         due_ns: The `perf_ns` time from which the next reading is due; checked by the callers, since
@@ -45,9 +45,9 @@ class ThreadTime:
         self.due_ns = now_ns + INTERVAL_NS
 
     def waited_ns(self) -> int | None:
-        """Return how long the current thread was ready without a processor since it was asked last.
+        """Return how long the current thread was ready without a processor since the last reading.
 
-        That was a twentieth of a second ago at most. None if the system does not tell, or the
+        That was a twentieth of a second ago at most. None if the system does not say, or the
         reading was taken in another thread.
         """
         before_ns = self._waited_ns

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 __all__ = ["REMEMBERED_PUBLISHERS", "missing_before"]
 
 REMEMBERED_PUBLISHERS = 1024
-"""For how many publishers a subscription keeps the last sequence number, and what else it knows."""
+"""Maximum number of publishers about which a subscription remembers anything."""
 
 
 def missing_before(last_sequences: Recent[bytes, int], gid: bytes, sequence: int) -> int:

@@ -449,12 +449,12 @@ class Transport(PartOfTransport, ABC):
     ) -> dict[str, bytes | None]:
         """Ask other contexts of the domain about themselves, by participant. For tools.
 
-        An empty answer is that of a context that does not know the question, such as one of an
-        older aionode; None stands for one of aionode that has not answered in time.
+        An empty answer comes from a context that does not know the question, such as one of an
+        older aionode; None stands for a context of aionode that has not answered in time.
 
         Args:
             what: What is asked for: one of the names that others give to `tell`.
-            question: What they are told of it.
+            question: The details of the question.
             timeout_s: The longest wait, in seconds.
             participants: Whom to ask; None for all.
         """

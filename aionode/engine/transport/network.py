@@ -35,13 +35,13 @@ __all__ = [
 ]
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
-"""Where processes of domain 0 meet on one machine; each further domain has the next ports.
+"""The ports where processes of domain 0 meet on one machine; further domains have the next ones.
 
 They are below the ephemeral ports, and a ROS router uses none of them.
 """
 
 SPARE_PORTS: Final = (17452, 17453, 17454)
-"""Where processes of domain 0 meet if other programs have taken all of those."""
+"""The ports where processes of domain 0 meet if other programs have taken all of those."""
 
 PORTS_OF_A_DOMAIN: Final = len(MEETING_PORTS) + len(SPARE_PORTS)
 

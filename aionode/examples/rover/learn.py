@@ -43,7 +43,7 @@ LONGEST_SEC = 20.0
 PARTS = 16
 CHUNK = 4
 MOST_CHUNKS = 200
-"""As many last about a minute and a half."""
+"""Maximum number of chunks, which last about a minute and a half."""
 
 NEAR = 2_400
 """The number of red pixels when the ball is half a metre ahead."""

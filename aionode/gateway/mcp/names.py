@@ -17,8 +17,8 @@ __all__ = ["MOST_CHARACTERS", "allowed", "commands_of", "limits_of", "may", "rig
 __all__ += ["tool_name", "topic_of", "user_names"]
 
 MOST_CHARACTERS: Final = 40
-"""The longest name of a tool: some clients cut names at 64 characters, including a prefix of
-theirs."""
+"""The longest name of a tool: some clients cut names at 64 characters, including a prefix of their
+own."""
 
 DIGITS: Final = 8
 """Digits of the hash at the end of a name that would be longer."""

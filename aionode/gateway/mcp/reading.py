@@ -59,7 +59,7 @@ SHORT: Final = 1500
 """The longest summary of one of several messages, in bytes."""
 
 QUIET_SEC: Final = 0.3
-"""After so many seconds without a new line, the log is considered complete."""
+"""Seconds without a new line after which the log is considered complete."""
 
 LEVELS: Final = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 

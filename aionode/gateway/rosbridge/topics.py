@@ -38,7 +38,7 @@ __all__ = ["Topics"]
 Op = dict[str, Any]
 
 COMPRESSIONS: Final = ("none", "png", "cbor", "cbor-raw")
-"""From the weakest on: a client's subscription uses the strongest that any of its ids requests."""
+"""In ascending order: a client's subscription uses the highest that any of its ids requests."""
 
 DEFAULT_DEPTH: Final = 100
 """Messages per topic that wait for a client without a ``queue_length``; with a ``throttle_rate``

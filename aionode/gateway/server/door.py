@@ -170,7 +170,7 @@ def is_script(scope: Message) -> bool:
 
 
 def hides_its_page(scope: Message, credentials: Credentials) -> bool:
-    """Return whether a browser request does not tell its page, as for images over plain HTTP.
+    """Return whether a browser request does not name its page, as for images over plain HTTP.
 
     Any page can put a token into the address of an image, so such tokens are counted separately:
     they do not lock out a client that presents its token elsewhere.

@@ -63,7 +63,7 @@ class ComplementaryFilter:
 
     @property
     def orientation(self) -> Quaternion:
-        """That of the IMU in the world, which looks north and up."""
+        """The orientation of the IMU in the world, whose axes point north and up."""
         return inverse(self._world or NO_TURN)
 
     def update(

@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 PACKAGE_NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+")
-"""As in REP 127, with the hyphens that it tolerates."""
+"""The pattern of package names in REP 127, with the hyphens that it tolerates."""
 
 
 class PackageNotFoundError(KeyError):

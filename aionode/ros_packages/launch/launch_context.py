@@ -49,14 +49,14 @@ class LaunchContext:
         self.launch_configurations: dict[str, Any] = {}
         self.environment: dict[str, str] = dict(os.environ)
         self.first_environment = dict(self.environment)
-        """That of this process when the launch began; launch files may change the other one."""
+        """The environment when the launch began; launch files may change `environment`."""
         self.locals = SimpleNamespace()
         self.is_shutdown = False
         self.steps: list[Step] = []
         self.load_file: Callable[[str, str], Any] = cannot_load
-        """Returns the description in a file of this path and kind: python, xml, yaml or any."""
+        """Returns the description in a file, by its path and kind: python, xml, yaml or any."""
         self.packages = Packages()
-        """The packages in which executables and files are searched."""
+        """The packages in which to look for executables and files."""
         self.declared: set[str] = set()
         """The arguments that have been declared."""
         self.skips_missing = False
@@ -158,7 +158,7 @@ class LaunchContext:
         self.environment = self._environments.pop()
 
     def reset_environment(self) -> None:
-        """Reset the environment to that with which the launch began."""
+        """Reset the environment to its state when the launch began."""
         self.environment.clear()
         self.environment.update(self.first_environment)
 

@@ -1,4 +1,4 @@
-"""What stands in a launch file for what a missing module or package would have given it."""
+"""Stand-ins for the objects that a launch file would take from a missing module or package."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class StandIn(LaunchDescriptionEntity):
 
     def __init__(self, name: str) -> None:
         self.__name = name
-        frame = sys._getframe(1)  # where the launch file has it from
+        frame = sys._getframe(1)  # the line of the launch file that creates it
         while frame.f_back is not None and frame.f_code.co_filename.startswith(AIONODE):
             frame = frame.f_back
         self._LaunchDescriptionEntity__where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
@@ -50,7 +50,7 @@ class StandIn(LaunchDescriptionEntity):
         return StandIn(f"{self.__name}.{name}")
 
     def __call__(self, *_: Any, **__: Any) -> StandIn:
-        """Return what stands for the result."""
+        """Return a stand-in for the result."""
         return StandIn(f"{self.__name}()".replace("()()", "()"))
 
     def __getitem__(self, key: Any) -> StandIn:

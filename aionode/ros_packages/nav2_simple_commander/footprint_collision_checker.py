@@ -1,4 +1,4 @@
-"""`nav2_simple_commander.footprint_collision_checker`: what a robot would stand on."""
+"""`nav2_simple_commander.footprint_collision_checker`: the costs under a robot's footprint."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FootprintCollisionChecker:
         self.costmap_: PyCostmap2D | None = None
 
     def setCostmap(self, costmap: PyCostmap2D) -> None:
-        """Set the costmap that is asked."""
+        """Set the costmap to use."""
         self.costmap_ = costmap
 
     def footprintCost(self, footprint: Any) -> float:
@@ -60,7 +60,7 @@ class FootprintCollisionChecker:
         return self.footprintCost(moved)
 
     def lineCost(self, x0: int, x1: int, y0: int, y1: int, step_size: float = 0.5) -> float:
-        """Return the greatest cost under a line between two cells; a single cell is one as well."""
+        """Return the greatest cost under a line between two cells, which may be the same cell."""
         if (x0, y0) == (x1, y1):
             return float(self.pointCost(x0, y0))
         greatest = 0.0
@@ -72,7 +72,7 @@ class FootprintCollisionChecker:
         return greatest
 
     def worldToMapValidated(self, wx: float, wy: float) -> tuple[int, int] | tuple[None, None]:
-        """Return the cell of a place in metres; two None outside of the map."""
+        """Return the cell of a place in metres; None twice outside the map."""
         return self.known().worldToMapValidated(wx, wy)
 
     def pointCost(self, x: int, y: int) -> Any:

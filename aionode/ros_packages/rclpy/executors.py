@@ -606,7 +606,7 @@ class MultiThreadedExecutor(Executor):
                 future.result()  # raises the callback's exception
 
     def _Executor__in_turn(self, ready: list[Ready]) -> list[Ready]:
-        """Return the ready entities, those first whose last call is longest ago."""
+        """Return the ready entities, the one whose last call is longest ago first."""
         return sorted(ready, key=lambda call: getattr(call[0], "_executor_turn", 0))
 
     def _Executor__wait_for_thread(

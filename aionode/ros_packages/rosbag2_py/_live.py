@@ -33,7 +33,7 @@ __all__ = [
 ]
 
 CHECK_S: Final = 0.1
-"""Interval at which a wait checks for Ctrl-C, since a lock does not let it through everywhere."""
+"""Interval at which a wait checks for Ctrl-C, which does not interrupt a lock on every system."""
 
 NOT_CONFIGURED: Final = "pass storage options, and options, when it is created"
 

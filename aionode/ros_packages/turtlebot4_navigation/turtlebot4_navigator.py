@@ -24,9 +24,9 @@ __all__ = ["TurtleBot4Directions", "TurtleBot4Navigator"]
 
 POLL_SEC: Final = 0.1
 EACH: Final = 5
-"""Of so many feedbacks, one is printed."""
+"""The number of feedback messages of which one is printed."""
 LONGEST: Final = Duration(seconds=600.0)
-"""After how long driving to a pose is canceled."""
+"""The time after which driving to a pose is canceled."""
 
 ENDS: Final = {
     TaskResult.SUCCEEDED: "Goal succeeded!",
@@ -95,14 +95,14 @@ class TurtleBot4Navigator(BasicNavigator):
         return pose
 
     def stampPose(self, pose: Any) -> Any:
-        """Return a pose with the frame of the map and the time of now."""
+        """Return a pose in the frame of the map, with the current time."""
         stamped = PoseStamped(pose=pose)
         stamped.header.frame_id = "map"
         stamped.header.stamp = self.get_clock().now().to_msg()
         return stamped
 
     def createPath(self) -> list[Any]:
-        """Return the poses that are sent to /initialpose until Enter is pressed in the terminal."""
+        """Return the poses published on /initialpose until Enter is pressed in the terminal."""
         poses: list[Any] = []
         self.new_pose = None
         self.creating_path = True
@@ -150,13 +150,13 @@ class TurtleBot4Navigator(BasicNavigator):
             pass
 
     def undock_send_goal(self) -> None:
-        """Have the base leave the dock."""
+        """Start to leave the dock."""
         client = self.undock_action_client
         self.undock_goal_handle = self._sent(client, Undock.Goal(), "Undock")
         self.undock_result_future = self._result_of(self.undock_goal_handle)
 
     def isUndockComplete(self) -> bool:
-        """Wait for 0.1 s, and return whether undocking has ended; also if it was not begun."""
+        """Wait for 0.1 s, and return whether undocking has ended, or has not been started."""
         if not self._is_over(self.undock_result_future):
             return False
         if self.undock_result_future is not None:
@@ -172,12 +172,12 @@ class TurtleBot4Navigator(BasicNavigator):
             pass
 
     def dock_send_goal(self) -> None:
-        """Have the base drive onto the dock that it sees."""
+        """Start to drive onto the dock that the base sees."""
         self.dock_goal_handle = self._sent(self.dock_action_client, Dock.Goal(), "Dock")
         self.dock_result_future = self._result_of(self.dock_goal_handle)
 
     def isDockComplete(self) -> bool:
-        """Wait for 0.1 s, and return whether docking has ended; also if it was not begun."""
+        """Wait for 0.1 s, and return whether docking has ended, or has not been started."""
         if not self._is_over(self.dock_result_future):
             return False
         if self.dock_result_future is not None:
@@ -229,7 +229,7 @@ class TurtleBot4Navigator(BasicNavigator):
         self._follow(show)
 
     def _follow(self, show: Callable[[Any], None]) -> None:
-        """Show every fifth feedback until the task ends, and say how it did."""
+        """Show every fifth feedback until the task ends, and log how it ended."""
         looks = 0
         while not self.isTaskComplete():
             looks += 1

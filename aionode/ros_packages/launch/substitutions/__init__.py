@@ -69,7 +69,7 @@ def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
 
 
 class UnknownConfiguration(SubstitutionFailure):
-    """There is no launch configuration of a name."""
+    """There is no launch configuration with the given name."""
 
 
 class LaunchConfiguration(Substitution):

@@ -73,7 +73,7 @@ class StoppedPeers:
         self._later = Later()
 
     def start(self, session: zenoh.Session) -> None:
-        """Look at the peers of a session from now on."""
+        """Check the peers of a session from now on."""
         self._session = session
         with translated(self._key):
             self._subscriber = session.declare_subscriber(
@@ -96,7 +96,7 @@ class StoppedPeers:
         self._looks.clear()
 
     def _be_told(self, _: zenoh.Sample) -> None:
-        """Look at all peers now and for a while, as another process has seen a stopped one."""
+        """Check all peers now and for a while, as another process has seen a stopped one."""
         is_first, self._looks_at_all = not self._looks_at_all, LOOKS
         if is_first:
             self._look()
@@ -108,7 +108,7 @@ class StoppedPeers:
         self._later.call(LOOK_S, self._look)
         stopped = self._stopped()
         if stopped & self._successors:
-            # Not a token: declaring one may block, as the one that is stopped reads nothing.
+            # Not a token: declaring one may block, as the stopped process reads nothing.
             self._state.control_messages.put(self._key, b"")
             if not self._looks_at_all:
                 self._looks_at_all = LOOKS
@@ -130,7 +130,7 @@ class StoppedPeers:
             )
 
     def _stopped(self) -> set[str]:
-        """Return those that are stopped, of the successors or of all peers."""
+        """Return the stopped processes among the successors, or among all peers."""
         peers = self._state.connections.kinds.keys()
         if peers != self._pids.keys():
             known = self._pids
@@ -142,7 +142,7 @@ class StoppedPeers:
         return {zid for zid, process in self._processes.items() if process.is_stopped()}
 
     def _watch(self, zids: AbstractSet[str]) -> None:
-        """Look at these peers from now on, and no longer at others."""
+        """Check these peers from now on, and no others."""
         processes = self._processes
         if processes.keys() == zids:
             return
@@ -155,6 +155,6 @@ class StoppedPeers:
 
 
 def visible_pid_of(zid: str) -> int | None:
-    """Return the process of a session if this one can look at it: the system may hide others'."""
+    """Return the process of a session if this one can check it: the system may hide others'."""
     pid = pid_of(zid)
     return pid if pid is not None and os.access(f"/proc/{pid}/stat", os.R_OK) else None

@@ -37,7 +37,7 @@ MOST_BYTES: Final = 64 << 20
 """Maximum size of all answers to one query that are kept, in bytes."""
 
 ANSWER_BYTES: Final = 1000
-"""What an answer takes besides its payload, in bytes."""
+"""The memory that an answer takes besides its payload, in bytes."""
 
 
 class Observed:

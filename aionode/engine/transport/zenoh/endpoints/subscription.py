@@ -379,13 +379,13 @@ class ZenohReader(Declaration):
         self.state.note_lie(
             self.endpoint.name,
             f"a HEARTBEAT or GAP up to message {last} was refused, as the publisher has not sent "
-            "so many",
+            "that many",
         )
 
     def started_anew(self, first: int) -> None:
         """Log once that messages arrive that were announced as missing."""
         self.state.note_lie(
             self.endpoint.name,
-            f"messages from number {first} on are taken, although it was said that they would not "
-            "come",
+            f"messages from number {first} on are accepted, although they were announced as "
+            "missing",
         )

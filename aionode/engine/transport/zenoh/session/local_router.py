@@ -140,7 +140,7 @@ class LocalRouter:
         until_linked(router)
 
     def _router_at(self, port: int) -> str:
-        """Return the id of the router at a port of this machine; "unknown" if it does not tell."""
+        """Return the id of the router at a port of this machine; "unknown" if it does not say."""
         with (
             suppress(zenoh.ZError),
             closing(open_probe(self._network, f"tcp/{LOOPBACK}:{port}")) as probe,
