@@ -39,6 +39,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "add_analyzer": "_diagnostics.add_analyzer",
         "aggregator_node": "_diagnostics.aggregator_node",
     },
+    "domain_bridge": {"domain_bridge": "_domain_bridge.domain_bridge"},
     "dummy_map_server": {"dummy_map_server": "_demo_nodes.dummy_map_server"},
     "dummy_sensors": {
         "dummy_joint_states": "_demo_nodes.dummy_joint_states",

@@ -1,0 +1,1 @@
+"""domain_bridge: passes topics from one domain id to another."""
