@@ -262,7 +262,7 @@ async def test_ages_of_stamps_are_judged(
 
 
 def test_a_stamp_that_nobody_set_is_an_error() -> None:
-    """Also where it is the only one: upstream calls that no data."""
+    """This holds even where it is the only one: upstream reports no data then."""
     task = TimeStampStatus()
     task.tick(LaserScan().header.stamp)
 

@@ -262,7 +262,7 @@ def test_automatic_liveliness_lasts_until_the_end() -> None:
     ],
 )
 def test_an_incompatible_policy_is_named_at_both_ends(policy: str) -> None:
-    """And no message is heard."""
+    """No message is heard."""
     with running("-m", "aionode.examples.quality_of_service.incompatible_qos", policy) as program:
         text = program.rest()
 

@@ -235,7 +235,7 @@ async def test_a_browser_that_leaves_during_its_upload_is_not_an_error(app: Fast
 
 @pytest.mark.parametrize("error", [HTTPException(504), ValueError("no map"), TimeoutError()])
 async def test_an_error_of_the_block_comes_out_as_it_is(app: FastAPI, error: Exception) -> None:
-    """Also a TimeoutError, which says nothing of the browser."""
+    """This includes a TimeoutError, which says nothing of the browser."""
     seen: list[Exception] = []
 
     @app.get("/")
@@ -252,7 +252,7 @@ async def test_an_error_of_the_block_comes_out_as_it_is(app: FastAPI, error: Exc
 
 
 async def test_a_request_that_is_cancelled_by_others_stays_cancelled(app: FastAPI) -> None:
-    """Such as by a server that ends."""
+    """A server that ends cancels requests, for example."""
 
     @app.get("/")
     async def wait(request: Request) -> None:

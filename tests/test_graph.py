@@ -45,7 +45,7 @@ def test_the_endpoints_of_its_own_context_are_found_among_all() -> None:
 
 
 def test_an_endpoint_of_its_own_context_is_found_until_it_is_removed() -> None:
-    """Also if the middleware has given it another gid meanwhile."""
+    """The middleware may have given it another gid meanwhile."""
     graph = Graph("own")
     subscription = endpoint_info("own", EndpointKind.SUBSCRIPTION, 1)
     other = endpoint_info("a1", EndpointKind.PUBLISHER, 2)
@@ -124,7 +124,7 @@ async def test_a_client_that_waits_for_a_service_does_not_look_at_new_topics() -
 
 
 async def test_what_is_offered_is_without_infrastructure_and_hidden_nodes() -> None:
-    """Of a small robot, nine of ten services are those that every node has."""
+    """In a small robot, nine of ten services are those that every node has."""
     context = local_context()
     robot = Node("base", context=context)
     tool = Node("_tool", context=context)

@@ -425,7 +425,7 @@ def test_rvl_of_another_size_than_wanted_is_not_decoded() -> None:
 
 @given(st.binary(max_size=80), st.integers(0, 9), st.integers(0, 9))
 def test_damaged_rvl_is_one_error(data: bytes, width: int, height: int) -> None:
-    """Or a picture of the size that it says."""
+    """Otherwise it is a picture of the size that it claims."""
     whole = bytes(12) + struct.pack("<II", width, height) + data
     try:
         read = decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=whole))

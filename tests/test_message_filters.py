@@ -266,7 +266,7 @@ def test_fewer_than_two_subscriptions_are_refused() -> None:
 
 
 def test_a_chain_gives_each_filter_the_output_of_the_one_before() -> None:
-    """And calls back with the output of the last one, once."""
+    """The chain calls back with the output of the last one, once."""
     chain = Chain()
     first, second = Cache(SimpleFilter(), 3), Cache(SimpleFilter(), 3)
     found: list[Any] = []
@@ -285,7 +285,7 @@ def test_a_chain_gives_each_filter_the_output_of_the_one_before() -> None:
 
 
 async def test_a_chain_begins_with_a_subscriber(node: Node) -> None:
-    """And may itself be the input of another filter."""
+    """It may itself be the input of another filter."""
     subscriber = Subscriber(node, PointStamped, "/points")
     chain = Chain()
     chain.connectInput(subscriber)

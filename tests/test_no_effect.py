@@ -166,7 +166,7 @@ async def test_the_arguments_of_a_single_node_are_looked_at_too(
 def test_every_policy_is_kept_so_none_is_mentioned(
     clock: ManualClock, caplog: pytest.LogCaptureFixture, profile: QoSProfile | int
 ) -> None:
-    """Nor what the node makes for itself, such as /rosout with its lifespan."""
+    """What the node creates itself, such as /rosout with its lifespan, is not mentioned either."""
     node = Node("node", context=local_context(clock=clock))
     node.create_publisher(String, "/scan", profile)
     node.create_subscription(String, "/scan", print, profile)

@@ -82,7 +82,7 @@ def workspace(tmp_path: Path) -> Path:
 
 
 def test_the_packages_of_a_workspace_are_those_that_colcon_finds(workspace: Path) -> None:
-    """Not what is ignored, built, or inside of another package."""
+    """Folders that are ignored, built, or inside another package are left out."""
     known = Packages(workspace).sources()
 
     assert sorted(known) == ["cfg_robot", "cpp_robot", "my_robot", "toml_robot"]

@@ -159,7 +159,7 @@ def test_a_few_points_as_tuples() -> None:
 
 
 def test_a_field_may_hold_several_numbers() -> None:
-    """Such as a normal, or a histogram."""
+    """Normals and histograms are examples."""
     fields = [field("id", 0, PointField.UINT8), field("normal", 4, count=3)]
 
     cloud = create_cloud(HEADER, fields, [[1, 0.0, 0.5, 1.0]], step=20)

@@ -33,7 +33,7 @@ class Talker(Node):
 async def test_a_node_of_ones_own_class_runs_in_the_context_of_the_test(
     node_factory: Callable[..., Node], aionode_context: Context, manual_clock: Any
 ) -> None:
-    """And follows its clock, without a word about either in the class."""
+    """It follows the test's clock, without a word about either in the class."""
     heard: list[str] = []
     listener = node_factory("listener")
     listener.create_subscription(String, "words", lambda msg: heard.append(msg.data))
@@ -154,7 +154,7 @@ def test_the_fixtures_work_with_anyio_alone(
 def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
     mode: str, mark: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also where anyio's plugin runs the test although pytest-asyncio is there."""
+    """They also work where anyio's plugin runs the test although pytest-asyncio is installed."""
     pytester.makeini(
         f"[pytest]\nasyncio_mode = {mode}\nasyncio_default_fixture_loop_scope = function\n"
     )

@@ -129,7 +129,7 @@ def test_a_profile_can_be_copied_and_changed() -> None:
 
 
 def test_repr_makes_an_equal_profile() -> None:
-    """And it shows only what is not the default."""
+    """It shows only what is not the default."""
     made = QoSProfile(
         history=HistoryPolicy.KEEP_ALL,
         reliability=ReliabilityPolicy.BEST_EFFORT,

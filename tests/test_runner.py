@@ -145,7 +145,7 @@ def test_arguments_that_no_node_needs_are_fine_for_a_node_made_before() -> None:
 
 
 def test_arguments_hold_for_nodes_of_every_context_while_run_runs() -> None:
-    """Not only for nodes of the default context; and not after the run."""
+    """They hold in other contexts than the default one, and not after the run."""
     context = local_context()
     names: list[str] = []
 

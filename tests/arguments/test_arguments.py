@@ -198,7 +198,7 @@ def test_a_value_that_cannot_be_read_is_shown_with_what_fits(line: str, says: st
 
 
 def test_an_error_in_a_file_has_its_line() -> None:
-    """And its path."""
+    """The error also has the path of the file."""
     with pytest.raises(InvalidROSArgsError, match=r"--params-file f\.yaml': line 3: no value"):
         parse("--ros-args --params-file f.yaml", f="node:\n  ros__parameters:\n    a:\n")
 
@@ -561,7 +561,7 @@ def test_any_words_are_arguments_or_an_error_that_shows_one(args: list[str]) -> 
 
 @given(st.integers(-(2**63), 2**63 - 1) | st.booleans() | st.floats(allow_nan=False))
 def test_what_python_prints_is_read_back(value: float) -> None:
-    """So that a file from `ros2 param dump` can be read."""
+    """A file from `ros2 param dump` can be read."""
     text = {math.inf: ".inf", -math.inf: "-.inf"}.get(value, str(value))
 
     parsed = parse_scalar(text)

@@ -38,7 +38,7 @@ def outputs(tmp_path: Path) -> Callable[..., Outputs]:
 
 
 def test_a_recording_does_not_differ_from_itself(outputs: Callable[..., Outputs]) -> None:
-    """Not even where it contains NaN."""
+    """This holds even where it contains NaN."""
     one = outputs(("/x", Float64(data=math.nan), 1), ("/y", String(data="a"), 2))
 
     assert bag.compare(one, one.records) == []

@@ -110,7 +110,7 @@ async def test_one_definition_that_cannot_be_read_costs_its_own_topic(tmp_path: 
 
 
 def test_a_type_of_a_recording_has_the_hash_that_ros_gives_it() -> None:
-    """So that playing it reaches nodes of the robot that recorded it."""
+    """Playing it then reaches nodes of the robot that recorded it."""
     made: Any = define("a/msg/B", "string from\n", recorded=True)
     plain: Any = define("a/msg/B", "string origin\n")
     assert description_message(made).type_description.fields[0].name == "from"

@@ -116,7 +116,7 @@ async def test_a_paused_player_publishes_one_by_one(tmp_path: Path) -> None:
 
 
 async def test_a_player_seeks_and_continues_there(tmp_path: Path) -> None:
-    """Also backward, and not beyond the recording."""
+    """It can also seek backward, and not beyond the recording."""
     record(tmp_path / "run", "a", "b", "c")
     clock = ManualClock()
     async with local_context(clock=clock) as context, Node("ear", context=context) as node:
@@ -347,7 +347,7 @@ async def test_the_next_file_is_announced(tmp_path: Path) -> None:
 
 
 async def test_the_clock_is_published_with_the_messages_of_a_topic(tmp_path: Path) -> None:
-    """So that nodes in simulated time see no time between messages."""
+    """Nodes in simulated time then see no time between messages."""
     record(tmp_path / "run", "a", "b")
     async with local_context() as context, Node("ear", context=context) as node:
         times: list[int] = []

@@ -142,7 +142,7 @@ def test_keys_pause_and_step_and_change_the_rate(run: str) -> None:
 
 @pytest.mark.processes
 def test_a_recording_ends_with_a_record_of_what_was_lost(tmp_path: Path) -> None:
-    """Also after Ctrl-C, which is the usual end."""
+    """This includes Ctrl-C, which is the usual end."""
     out = tmp_path / "run"
     line = [*f"-m aionode bag record -a --json -o {out}".split()]
     with subprocess.Popen(

@@ -74,7 +74,7 @@ async def test_a_service_behind_a_bridge_is_called(
 async def test_doctor_finds_nothing_wrong_with_nodes_on_cyclone(
     robot: tuple[Node, StandIn], screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nor with this environment's middleware, which the bridge speaks."""
+    """It accepts this environment's middleware too, which the bridge speaks."""
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")
     node, _ = robot
     await known(node)

@@ -288,7 +288,7 @@ def test_a_unit_that_runs_elsewhere_is_refused(
 def test_nothing_is_shipped_that_begins_with_a_dot(
     workspace: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Such as secrets, caches, and the repository's history; nor are build results."""
+    """Secrets, caches and the repository's history stay behind, as do build results."""
     for name in (".env", ".venv/bin/python", "build/my_robot/copy.py"):
         (workspace / name).parent.mkdir(parents=True, exist_ok=True)
         (workspace / name).write_text("secret\n")

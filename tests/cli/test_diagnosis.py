@@ -248,7 +248,7 @@ def test_names_that_are_alike(name: str, other: str, alike: bool) -> None:
 
 
 def test_the_nearest_name_is_suggested() -> None:
-    """Not the first one with the same last part; and none that has nothing else in common."""
+    """The first one with the same last part is not, nor one that has nothing else in common."""
     known = ["/arm/get_state", "/base/get_state"]
 
     assert close_to("/bse/get_state", known) == ". Did you mean '/base/get_state'?"

@@ -65,7 +65,7 @@ def expect_one_line(error: AionodeError) -> None:
 @example(Header, "&a {stamp: *a}")
 @example(String, "data: \udcff")
 def test_any_text_is_a_message_or_an_error(msg_type: Any, text: str) -> None:
-    """Of `topic pub`, `service call` and `action send_goal`."""
+    """`topic pub`, `service call` and `action send_goal` take any text."""
     for fill in (message_from_yaml, filled):
         try:
             assert isinstance(fill(msg_type, text), msg_type)
@@ -83,7 +83,7 @@ def filled(msg_type: Any, text: str) -> Any:
 @example(DIGITS)
 @example("[" * 5000)
 def test_any_text_is_a_value_of_a_parameter_or_an_error(text: str) -> None:
-    """Of `param set`."""
+    """`param set` takes any text."""
     try:
         parameter_value(text)
     except CommandError as error:
@@ -102,7 +102,7 @@ def test_many_digits_are_parsed_in_linear_time(text: str) -> None:
 
 @given(st.lists(st.sampled_from([*"[].-_ ²٣", "poses", "position", "x", "0", DIGITS])).map("".join))
 def test_any_path_is_a_field_or_an_error(path: str) -> None:
-    """Of `topic echo --field`."""
+    """`topic echo --field` takes any text."""
     try:
         field_of(PoseArray(), path)
     except CommandError as error:
@@ -117,7 +117,7 @@ def test_any_path_is_a_field_or_an_error(path: str) -> None:
 @example("m.data.nope")
 @example("m" + ".data" * 5000)
 def test_any_filter_is_an_expression_or_an_error(text: str) -> None:
-    """Of `topic echo --filter` and `topic hz --filter`, which are never evaluated as statements."""
+    """`topic echo --filter` and `topic hz --filter` never evaluate a text as a statement."""
     try:
         filter_from(text)
     except CommandError as error:
@@ -130,7 +130,7 @@ def test_any_filter_is_an_expression_or_an_error(text: str) -> None:
 @example("[[")
 @example("(?" + "i" * 100)
 def test_any_pattern_is_one_or_an_error(text: str) -> None:
-    """Of `param list --filter`."""
+    """`param list --filter` takes any text."""
     try:
         pattern_from(text)
     except CommandError as error:
@@ -145,7 +145,7 @@ def test_any_pattern_is_one_or_an_error(text: str) -> None:
 @example(text=DIGITS)
 @example(text="99999999999999999999")
 def test_any_number_is_one_that_every_clock_and_queue_can_take(type_: Any, text: str) -> None:
-    """Of every option that takes one."""
+    """This holds for every option that takes a number."""
     try:
         number = type_.convert(text, None, Context(Command("test")))
     except UsageError:

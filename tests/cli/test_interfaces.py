@@ -165,7 +165,7 @@ def test_own_definitions_are_loaded_on_request(
 def test_generate_writes_modules(
     workspace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """And says which."""
+    """It prints which ones."""
     status = main(["interface", "generate", str(workspace), "-o", str(tmp_path / "out")])
 
     files = [Path(line) for line in capsys.readouterr().out.splitlines()]

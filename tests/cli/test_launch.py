@@ -134,7 +134,7 @@ def test_its_exit_status_is_that_of_the_first_failure(
 def test_what_it_cannot_do_is_one_line(
     file: str, words: list[str], text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """And nothing is started."""
+    """Nothing is started."""
     assert main(["launch", file, "speed:=1", *words]) == 1
 
     assert text in capsys.readouterr().err

@@ -90,7 +90,7 @@ def test_the_settings_of_a_program_are_json(host: str) -> None:
 
 
 def test_the_settings_of_codex_are_toml() -> None:
-    """Also with quotes in a name."""
+    """Names with quotes are escaped."""
     values = tomllib.loads(settings_for("codex", COMMAND))
 
     assert values["mcp_servers"]["robot"] == {"command": "python", "args": COMMAND[1:]}

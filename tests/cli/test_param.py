@@ -43,7 +43,7 @@ async def owner(node_factory: Callable[..., Node]) -> Node:
 
 
 async def test_list_prints_names_indented(tool: Node, owner: Node, screen: Any) -> None:
-    """Of one node, without its name."""
+    """The list of a single node omits its name."""
     await list_parameters(tool, "/param_node", output=screen.output)
 
     assert screen.text == "  name\n  speed\n  start_type_description_service\n  use_sim_time\n"

@@ -149,7 +149,7 @@ async def test_the_transforms_of_one_robot_of_a_fleet_are_shown(
 async def test_tree_speaks_the_languages_of_graphviz_and_browsers(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """And JSON."""
+    """It also writes JSON."""
     StaticTransformBroadcaster(node_factory("sender")).sendTransform(transform("base", "arm"))
     await tree(tool, output=screen.output, dot=True, listen_s=0.05)
     assert screen.text.startswith('digraph G {\n"base" -> "arm"[label="Broadcaster: /sender')

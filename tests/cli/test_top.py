@@ -165,7 +165,7 @@ async def test_what_nodes_say_of_themselves_is_a_table(robot: Node) -> None:
 
 @pytest.mark.slow
 async def test_a_field_is_plotted_over_time(robot: Node) -> None:
-    """Of the topic under the cursor; the same key ends it, and its subscription."""
+    """A key plots a field of the topic under the cursor, and ends the plot and its subscription."""
     app = TopApp(robot, interval=1000.0)
     before = len(list(robot.subscriptions))
     async with app.run_test(size=(160, 40)) as pilot:

@@ -195,7 +195,7 @@ async def test_a_topic_that_a_recording_has_not_is_named(
 
 
 async def test_a_picture_without_a_folder_is_refused_at_once(tool: Node, screen: Any) -> None:
-    """Not only after minutes of collecting data."""
+    """The error does not come after minutes of collecting data."""
     with pytest.raises(CommandError, match="there is no folder"):
         await plot(tool, ["/a.b"], output=screen.output, png="/nowhere/at/all.png")
 
@@ -208,7 +208,7 @@ async def test_a_picture_without_a_folder_is_refused_at_once(tool: Node, screen:
 def test_any_numbers_are_drawn_within_their_space(
     points: list[tuple[int, float]], width: int, height: int
 ) -> None:
-    """Also none, equal ones, infinities, and the largest possible ones."""
+    """They may be none, equal, infinite, or the largest possible ones."""
     line = Line("name")
     line.points.extend(points)
     pieces = chart([line, line], width=width, height=height, start_ns=0, end_ns=10 * S)

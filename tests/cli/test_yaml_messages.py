@@ -60,7 +60,7 @@ def test_a_colon_within_a_value_is_one(text: str) -> None:
 
 
 def test_a_stamp_is_set_deep_inside() -> None:
-    """And again for the next message."""
+    """It is set anew for the next message."""
     filler = Filler(PoseStamped, "{header: {stamp: now, frame_id: map}}")
 
     seconds = [

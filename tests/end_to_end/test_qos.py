@@ -34,7 +34,7 @@ ZENOH_LEASE_S = 10.0
 async def test_a_frozen_process_is_not_alive_within_its_lease(
     link: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And it is alive again when it continues."""
+    """It is alive again when it continues."""
     asserted = returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
     context = Context(link=link)
     setting = {"AIONODE_LINK": "on" if link else "off"}

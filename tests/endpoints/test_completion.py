@@ -123,7 +123,7 @@ async def test_completion_offers_what_is_for_users(name: str, objects: dict[str,
 
 
 def test_what_completion_offers_is_documented() -> None:
-    """So that the reference shows every class whole, without a list of exceptions."""
+    """The reference shows every class whole, without a list of exceptions."""
     bare = []
     for name in CLASSES:
         owner = getattr(aionode, name)

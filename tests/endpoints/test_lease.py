@@ -529,7 +529,7 @@ async def test_a_stop_remains_until_a_command_brings_another(robot: Robot) -> No
 
 
 async def test_nothing_is_sent_without_a_stop_before_the_first_command(robot: Robot) -> None:
-    """And nothing is numbered, so that no subscription counts a lost message."""
+    """Nothing is numbered, so no subscription counts a lost message."""
     async with robot.speed.lease(stop=None):
         await robot.clock.advance(1.0)
     assert await robot.took() == []

@@ -80,7 +80,7 @@ async def bench(node_factory: Callable[..., Node]) -> Bench:
 
 
 async def test_nothing_is_published_before_it_is_asked_for(bench: Bench) -> None:
-    """Nor is there a publisher, which would be an entry in the graph of every node."""
+    """There is no publisher either, which would be an entry in the graph of every node."""
     assert await bench.call() == []
     assert bench.node.count_publishers(TOPIC) == 0
 

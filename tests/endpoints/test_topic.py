@@ -150,7 +150,7 @@ async def test_a_callback_with_two_parameters_gets_the_message_info(node: Node) 
 async def test_times_of_a_message_come_from_the_clock_of_the_context(
     node: Node, manual_clock: Any
 ) -> None:
-    """So that a test can compare them."""
+    """A test can compare them."""
     heard: list[MessageInfo] = []
     node.create_subscription(String, "words", lambda msg, info: heard.append(info))
     await manual_clock.advance(2.5)
@@ -560,7 +560,7 @@ async def test_lost_messages_are_counted() -> None:
 
 
 async def test_a_delayed_message_is_what_was_published(manual_clock: Any) -> None:
-    """And not what its publisher has changed since."""
+    """What its publisher has changed since is not in it."""
     node = faulty_node(delay=1.0, clock=manual_clock)
     reader = node.create_subscription(Int32, "numbers")
     msg = Int32(data=1)

@@ -268,7 +268,7 @@ def test_a_spinning_loop_is_on_time_for_a_timer() -> None:
 
 
 def test_a_loop_spins_only_while_its_context_is_open() -> None:
-    """And for only one context."""
+    """A loop spins for only one context."""
     selector = selectors.DefaultSelector()
 
     async def main() -> None:

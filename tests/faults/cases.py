@@ -29,7 +29,7 @@ FREEZES_S = (5, PAST_LEASE_S, 70)
 """Shorter than the lease of 10 s, longer, and longer than that of ROS 2 nodes, which is 60 s."""
 
 RETURNS_S = (5, PAST_LEASE_S, 33, 70)
-"""And between the two: a peer of ROS 2 nodes is gone for itself, but not yet for them."""
+"""Those, and one in between: a peer of ROS 2 nodes is gone for itself, but not yet for them."""
 
 LEASE_S = 10.0
 """Time after which a frozen process counts as gone, in seconds."""

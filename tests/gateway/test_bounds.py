@@ -351,7 +351,7 @@ async def test_a_text_that_is_no_name_of_a_type_is_sought_nowhere(
 
 
 async def test_parameters_of_many_nodes_are_listed(bench: Bench) -> None:
-    """Not only those of as many nodes as there may be simultaneous calls."""
+    """They may be more than there may be simultaneous calls."""
     bench.allow("[limits]\ncalls = 8\n[[allow]]\nsee = '/**'")
     names = [f"robot_{number}" for number in range(12)]
     async with AsyncExitStack() as stack:

@@ -219,7 +219,7 @@ async def test_a_command_that_waited_too_long_is_refused(
 
 
 async def test_a_command_with_an_old_stamp_is_refused(bench: Bench) -> None:
-    """Also with a stamp in the future, which says as little about its age."""
+    """A stamp in the future, which says as little about the command's age, is refused too."""
     bench.allow(POLICY)
     got: list[TwistStamped] = []
     bench.node.create_subscription(TwistStamped, "/stamped", got.append)

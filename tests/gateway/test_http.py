@@ -29,7 +29,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 from tests.support.http_client import http_client
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""So that a request finds the message, whichever arrives first."""
+"""A request then finds the message, whichever arrives first."""
 
 NodeFactory = Callable[..., Node]
 
@@ -168,7 +168,7 @@ async def test_messages_are_a_stream_of_events(client: httpx.AsyncClient, robot:
 async def test_a_slow_stream_of_events_has_the_last_message(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Of a burst the first and the last message are sent, with the requested time between."""
+    """The first and the last message of a burst are sent, with the requested time between them."""
     publisher = robot.create_publisher(String, "/chatter", 10)
     async with client.stream(
         "GET", "/topics/chatter?min_period_sec=0.05", headers={"Accept": "text/event-stream"}
@@ -254,7 +254,7 @@ async def test_bytes_are_base64_in_both_directions(client: httpx.AsyncClient, ro
 async def test_a_body_that_is_no_message_is_refused(
     client: httpx.AsyncClient, robot: Node, body: bytes, media_type: str, status: int, code: str
 ) -> None:
-    """Also one that would exhaust the parser's stack, or the robot's memory."""
+    """A body that would exhaust the parser's stack or the robot's memory is refused as well."""
     robot.create_subscription(String, "/chatter")
 
     answer = await client.post(
@@ -740,7 +740,7 @@ async def test_the_document_has_what_the_caller_may_do(
 async def test_the_openapi_document_leaves_infrastructure_out_unless_all_is_asked_for(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
-    """Of a robot with three nodes, 21 of 23 services would be infrastructure."""
+    """For a robot with three nodes, 21 of 23 services would be infrastructure."""
     robot.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
     of_user = (await client.get("/openapi.json")).json()["paths"]
     everything = (await client.get("/openapi.json?all=1")).json()["paths"]

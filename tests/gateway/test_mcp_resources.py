@@ -62,7 +62,7 @@ async def test_a_topic_is_read_as_a_resource(assisted: Bench, era: str) -> None:
 
 @pytest.mark.parametrize("uri", ["robot://topic/tekst", "robot://type/std_msgs/msg/No", "x://y"])
 async def test_what_is_not_there_is_an_error(assisted: Bench, era: str, uri: str) -> None:
-    """Of the protocol, since resources have no other errors."""
+    """It is an error of the protocol, since resources have no other errors."""
     client = await assisted.connect(era)
     with pytest.raises(mcp.MCPError):
         await client.read_resource(uri)

@@ -44,7 +44,7 @@ async def refused(client: Any, tool: str, /, **arguments: Any) -> str:
 
 
 async def test_a_client_has_tools_for_what_the_policy_allows(assisted: Bench, era: str) -> None:
-    """And its own tool for each service and action."""
+    """Each service and action has a tool of its own."""
     client = await assisted.connect(era)
     names = [tool.name for tool in (await client.list_tools()).tools]
 
@@ -271,7 +271,7 @@ async def test_twenty_clients_at_once_are_served(assisted: Bench, era: str) -> N
 
 
 async def test_each_call_has_a_line_in_the_audit_log(assisted: Bench, era: str) -> None:
-    """Also one that only looks, and one that is refused."""
+    """Calls that only look, and calls that are refused, are logged as well."""
     client = await assisted.connect(era)
     await answered(client, "list")
     await refused(client, "publish", topic="/cmd_vel", message={})

@@ -106,7 +106,7 @@ def test_a_body_that_is_sent_has_no_null() -> None:
 
 
 def test_an_image_is_also_a_picture() -> None:
-    """So that a page knows that it can show it."""
+    """A page then knows that it can show it."""
     (answer,) = (document()["paths"]["/topics/camera/image"]["get"]["responses"]["200"],)
 
     assert set(answer["content"]) == {

@@ -287,7 +287,7 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
 
 
 async def test_a_key_drives_while_it_is_held(context: Context) -> None:
-    """Also with stamped commands; the gateway sets the stamp by the robot's clock."""
+    """Stamped commands work too; the gateway sets the stamp by the robot's clock."""
     policy = Policy.default(allow_write=True)
     stamped: list[TwistStamped] = []
     async with scene(context, policy) as (page, robot, *_):
@@ -366,7 +366,7 @@ async def test_a_picture_larger_than_its_data_is_an_error(context: Context) -> N
 
 
 async def test_numbers_that_hardly_differ_can_be_plotted(context: Context) -> None:
-    """Of nanoseconds since 1970, lines of the grid may be closer than two numbers can be."""
+    """With nanoseconds since 1970, grid lines may be closer than two numbers can be."""
     async with scene(context) as (page, *_):
         assert await page.value(
             "import('./page/plot.js').then(({ Plot }) => {"

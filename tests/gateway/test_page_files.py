@@ -77,7 +77,7 @@ async def test_a_path_that_is_not_there_is_answered_with_what_to_do(
 async def test_a_websocket_at_another_path_is_answered_with_what_to_do(
     web: httpx.AsyncClient,
 ) -> None:
-    """Not with a bare 403."""
+    """A bare 403 would say nothing."""
     address = str(web.base_url.copy_with(scheme="ws", path="/robot/"))
     with pytest.raises(InvalidStatus) as refused:
         await connect(address)

@@ -63,7 +63,7 @@ async def test_a_list_leaves_out_parameters_that_are_hidden(bench: Bench, camera
 
 
 async def test_who_may_only_call_reads_no_parameters(bench: Bench, camera: Node) -> None:
-    """Nor may such a client set them by a call: the rules for parameters decide."""
+    """Such a client may not set them by a call either: the rules for parameters decide."""
     bench.allow('[[who]]\nname = "guest"\nloopback = true\n[[allow]]\ncall = "/**"')
     async with bench.session() as session:
         with pytest.raises(RefusedError, match="see /camera:exposure"):

@@ -193,7 +193,7 @@ def test_a_limit_of_a_field_that_is_not_there_refuses_the_message() -> None:
 
 
 def test_an_integer_is_clamped_to_an_integer_within_the_limits() -> None:
-    """Not to a fractional limit, which it cannot have."""
+    """It cannot have a fractional limit."""
     limit = FieldLimit(0.5, 2.5, "clamp")
     policy = Policy(allow=[Rule(parameter="/n:p", fields={"value": limit})])
 
@@ -346,7 +346,7 @@ def test_a_certificate_identifies_a_client() -> None:
 def test_pages_of_other_origins_may_not_connect(
     policy: Policy, shown: dict[str, object], passes: bool
 ) -> None:
-    """Not even under their own name that their name server has rebound."""
+    """They may not even do so under their own name, rebound by their name server."""
     if passes:
         assert policy.identify(credentials(**shown)).name == "guest"
     else:

@@ -208,7 +208,7 @@ def test_each_kind_of_refusal_happens_somewhere(kind: Refusal) -> None:
 
 
 def test_each_code_of_a_refusal_is_a_kind() -> None:
-    """And has an HTTP status."""
+    """Each kind has an HTTP status."""
     assert {Refusal.of(RefusedError("x", "y", code)).value for code in STATUS} == set(STATUS)
     assert Refusal.of(MessageError("x", "y")) is Refusal.INVALID
     assert Refusal.of(ServiceError("x", "y")) is Refusal.FAILED
@@ -382,7 +382,7 @@ async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
 async def test_messages_for_a_slow_client_are_counted_and_said(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """But not if it wants only the newest."""
+    """They are not if the client wants only the newest."""
     words = bench.node.create_publisher(String, "/words", 100)
     async with bench.session() as session:
         for depth in (1, 3):

@@ -434,7 +434,7 @@ async def test_a_client_executes_goals(client: RosbridgeClient, node: Node) -> N
 async def test_a_goal_that_the_client_does_not_reach_is_aborted(
     client: RosbridgeClient, node: Node, answer: dict[str, Any], status: GoalStatus
 ) -> None:
-    """Also if the client's answer is not a result, or empty, as from roslibjs."""
+    """The same holds if the client's answer is not a result, or empty, as from roslibjs."""
     client.send("advertise_action", action="/count", type=FIBONACCI)
     caller, goal = served(node)
     await caller.wait_for_server()

@@ -71,7 +71,7 @@ def op_of_chance(chance: random.Random) -> str:
 
 @pytest.mark.parametrize("seed", range(4))
 async def test_random_ops_harm_nobody(robot: Robot, client: RosbridgeClient, seed: int) -> None:
-    """Not even its sender: every failure is answered."""
+    """They do not even harm their sender: every failure is answered."""
     chance = random.Random(seed)  # noqa: S311  # no secret
     async with rosbridge_client(robot) as wild:
         wild.send("set_level", level="info")

@@ -150,7 +150,7 @@ async def test_no_token_reaches_a_log(
     tmp_path: Path,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Not even a wrong one, at the lowest level: logs are kept, and shown to others."""
+    """Wrong tokens and the lowest level are no exception: logs are kept, and shown to others."""
     policy = tmp_path / "policy.toml"
     known = hashlib.sha256(b"hush").hexdigest()
     policy.write_text(f'[[who]]\nname = "me"\ntoken_sha256 = "{known}"\n')

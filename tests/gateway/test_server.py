@@ -153,7 +153,7 @@ async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
 
 
 async def test_an_error_of_the_program_propagates_unchanged() -> None:
-    """Not in a group, so that `except` finds it."""
+    """It is not in a group, so `except` finds it."""
     with pytest.raises(LookupError, match="of the program"):
         async with serving():
             raise LookupError("of the program")
@@ -372,7 +372,7 @@ async def test_the_gateway_ends_as_soon_as_its_clients_are_gone(
 
 
 async def test_a_port_that_is_taken_is_an_error() -> None:
-    """And the process continues: the server must not end it."""
+    """The process continues: the server must not end it."""
     async with serving() as gateway:
         second = Gateway(gateway.node, port=gateway.port)
         with pytest.raises(OSError, match="in use"):
@@ -455,7 +455,7 @@ async def test_what_a_changed_policy_file_cannot_change_is_said(
 
 
 async def test_a_program_has_sessions_of_its_own() -> None:
-    """Of another protocol, such as one for language models."""
+    """They may have another protocol, such as one for language models."""
     async with serving() as gateway:
         async with gateway.clients.session(Identity("program"), "own") as session:
             assert "/rosout" in session.graph.topics()

@@ -131,7 +131,7 @@ def furnished(bench: Bench) -> Bench:
 async def test_each_rule_allows_what_it_says(
     furnished: Bench, act: Callable[[Session], Awaitable[None]], rule: str
 ) -> None:
-    """And nothing more is needed for it."""
+    """Nothing more is needed for it."""
     furnished.allow(f"[[allow]]\n{rule}\n[[allow]]\nsee = '/robot'")
     async with furnished.session() as session:
         await act(session)
@@ -345,7 +345,7 @@ async def test_a_message_is_encoded_once_for_all_clients(bench: Bench) -> None:
 
 
 async def test_a_slow_client_keeps_its_newest_messages(bench: Bench) -> None:
-    """And slows nobody down: the oldest are dropped and counted."""
+    """It slows nobody down: the oldest are dropped and counted."""
     words = bench.node.create_publisher(String, "/words", 10)
     async with bench.session() as slow, bench.session() as fast:
         await slow.subscribe("/words", frame=text_of, key="w", depth=2)

@@ -58,7 +58,7 @@ def test_a_service_is_printed_as_ros2_interface_show_does() -> None:
 
 
 def test_types_of_other_packages_have_their_package() -> None:
-    """And those of the same package do not."""
+    """Types of the same package have none."""
     assert definition_text(TwistStamped) == "std_msgs/Header header\nTwist twist\n"
 
 

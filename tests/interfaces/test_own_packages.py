@@ -51,7 +51,7 @@ def go_to() -> Any:
 
 
 def test_the_variable_names_folders(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """So that a plain `python program.py` has them, wherever it lies; defaults are kept."""
+    """A plain `python program.py` has them, wherever it lies; defaults are kept."""
     monkeypatch.setenv("AIONODE_INTERFACES", str(workspace))
 
     assert go_to().Goal().tolerance == 0.05

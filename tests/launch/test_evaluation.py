@@ -140,7 +140,7 @@ def test_a_condition_leaves_an_action_out(files: Files) -> None:
 
 
 def test_an_included_file_gets_its_arguments_and_knows_its_place(files: Files) -> None:
-    """Also a file in another language; the including file then has its own folder again."""
+    """It may be in another language; the including file then has its own folder again."""
     files.write(
         "sub/inner.launch.xml",
         """
@@ -272,7 +272,7 @@ def test_an_executable_is_found_in_its_package(files: Files, package: Path) -> N
 
 
 def test_an_executable_of_a_workspace_is_found_without_a_build(files: Files) -> None:
-    """Also as the first word of a command; its name stays the same in any case."""
+    """It may be the first word of a command; its name stays the same in any case."""
     files.write("src/robot/package.xml", "<package><name>robot</name></package>")
     files.write("src/robot/robot/__init__.py", "")
     files.write(

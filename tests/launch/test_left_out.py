@@ -169,7 +169,7 @@ def test_only_the_windows_of_a_package_are_left_out(files: Files) -> None:
 def test_a_window_that_is_installed_is_started(
     files: Files, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Such as those of a ROS 2 that is sourced."""
+    """A sourced ROS 2 has such windows."""
     program = Path(files.write("bin/plotjuggler", "#!/bin/sh\n"))
     program.chmod(0o755)
     monkeypatch.setenv("PATH", str(program.parent), prepend=os.pathsep)
@@ -312,7 +312,7 @@ def test_what_is_made_by_a_module_that_is_not_there_is_left_out(files: Files) ->
 def test_a_file_whose_description_comes_from_a_module_that_is_not_there_starts_nothing(
     files: Files,
 ) -> None:
-    """Such as those written by MoveIt's assistant."""
+    """Files written by MoveIt's assistant are like this."""
     text = """
 def generate_launch_description():
     from moveit_configs_elsewhere.launches import generate_rsp_launch
@@ -335,7 +335,7 @@ def test_a_name_that_aionode_does_not_have_stays_an_error(files: Files) -> None:
 
 @pytest.mark.processes
 def test_a_command_that_looks_for_a_package_that_is_not_there_is_left_out(files: Files) -> None:
-    """Such as xacro, for a description that includes another package's."""
+    """One is xacro, for a description that includes another package's."""
     pytest.importorskip("xacro")
     files.write(
         "robot.urdf.xacro",
@@ -424,7 +424,7 @@ def generate_launch_description():
 
 
 def test_code_that_cannot_handle_what_a_missing_module_gives_it_is_left_out(files: Files) -> None:
-    """Such as code that joins texts; the module is named, not the stand-in."""
+    """Code that joins texts is such code; the error names the module, not the stand-in."""
     text = """
 from launch import LaunchDescription
 from launch.actions import ExecuteProcess, OpaqueFunction
@@ -510,7 +510,7 @@ def test_a_file_that_is_included_and_is_not_here_is_left_out(files: Files) -> No
 
 
 def test_code_that_runs_a_program_that_is_not_installed_is_left_out(files: Files) -> None:
-    """Such as one that makes an environment for a node."""
+    """One creates an environment for a node."""
     text = """
 import subprocess
 from launch import LaunchDescription

@@ -169,7 +169,7 @@ def test_what_is_not_there_or_not_clear_is_an_error_of_the_launch_file(
 
 
 def test_arguments_of_xacro_may_be_known_at_launch_only(arm: Files) -> None:
-    """Such as a launch argument that says whether there is a hand."""
+    """A launch argument may say whether there is a hand."""
     builder = (
         "MoveItConfigsBuilder('arm')"
         ".robot_description(mappings={'hand': LaunchConfiguration('hand')})"

@@ -331,7 +331,7 @@ async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
 
 
 async def test_a_command_runs_once_all_is_ready(robot: Robot) -> None:
-    """Such as systemd-notify."""
+    """One example is systemd-notify."""
     mark = robot.files.folder / "ready"
     async with robot.system as system, asyncio.TaskGroup() as tasks:
         plan = robot.plan("ExecuteProcess(cmd=['sleep', '1000']),")

@@ -244,7 +244,7 @@ async def test_a_policy_that_hangs_stops_the_robot_within_the_lease(robot: Robot
 
 
 async def test_a_policy_that_fails_stops_the_robot_at_once(robot: Robot) -> None:
-    """And raises what it raised."""
+    """It raises what the policy raised."""
     asked = 0
 
     def answer(seen: dict[str, np.ndarray]) -> np.ndarray:
@@ -354,7 +354,7 @@ async def test_limits_clamp_and_are_counted(robot: Robot) -> None:
 
 
 async def test_a_chunk_of_another_shape_is_refused(robot: Robot) -> None:
-    """And says what fits."""
+    """The error says what is valid."""
     async with contract_of().act(robot.node) as actor:
         with pytest.raises(
             ValueError, match=r"shape is \(1, 2\); pass a row of 1 numbers .*angular.z"

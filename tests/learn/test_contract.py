@@ -233,7 +233,7 @@ def test_what_stands_for_infinity_is_finite(infinity: float) -> None:
 
 
 def test_a_zero_is_kept_in_a_contract(tmp_path: Path) -> None:
-    """Of a limit, and of what stands for infinity; a bag has a copy of its contract."""
+    """It may be a limit, or replace infinity; a bag has a copy of its contract."""
     given = loaded(tmp_path).to_dict()
     given["observations"][1]["infinity"] = 0.0
     given["actions"][0] |= {"lower": 0.0, "upper": 0.0}

@@ -196,7 +196,7 @@ def test_a_bag_that_was_cut_after_its_recording_says_what_is_missing(
 
 
 def test_no_bag_of_a_folder_is_left_out(tmp_path: Path) -> None:
-    """Not one of SQLite, and not one whose files are gone, which is an error."""
+    """A bag of SQLite counts, and so does one whose files are missing, which is an error."""
     runs = tmp_path / "runs"
     demonstration(runs / "a", length_sec=0.5)
     (runs / "contract.yaml").touch()

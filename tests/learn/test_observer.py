@@ -201,7 +201,7 @@ async def test_a_topic_that_is_never_heard_is_named(robot: Robot) -> None:
 
 
 async def test_a_robot_that_is_not_there_is_named(robot: Robot) -> None:
-    """Not even its reference."""
+    """Its reference is missing too."""
     async with CONTRACT.observe(robot.node) as observations:
         waiting = begin(next_of(observations.at()))
         await robot.clock.advance(4.9)
@@ -290,7 +290,7 @@ async def test_a_reference_that_falls_silent_after_a_false_time_is_named(robot: 
 
 
 async def test_one_joint_of_the_future_does_not_shut_out_the_next(robot: Robot) -> None:
-    """Nor does it make the messages before it disappear."""
+    """It does not make the messages before it disappear either."""
     async with CONTRACT.observe(robot.node) as observations:
         for time_ms in (930, 950, 100_000, 970):
             await robot.move("arm", time_ms, time_ms / 1000)
@@ -318,7 +318,7 @@ def histories(messages: list[tuple[int, int]]) -> tuple[History, list[int]]:
     error_ms=st.integers(min_value=-100_000, max_value=100_000),
 )
 def test_a_history_keeps_what_an_export_keeps(steps: list[int], place: int, error_ms: int) -> None:
-    """Of a topic with one false time, in the past or in the future, once the next one has come."""
+    """A false time, in the past or in the future, is left out once the next message has come."""
     arrivals = np.cumsum(steps).tolist()
     false = min(place, len(steps) - 2)
     times = [each + error_ms * (at == false) for at, each in enumerate(arrivals)]

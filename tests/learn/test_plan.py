@@ -150,7 +150,7 @@ def test_a_blend_needs_something_to_blend_with() -> None:
 
 
 def test_what_is_left_over_begins_at_the_time_asked_for() -> None:
-    """So that its rows are those of the next chunk, sent or not, as real-time chunking wants."""
+    """Its rows are those of the next chunk, sent or not, as real-time chunking needs."""
     plan = plan_of()
     assert plan.left_over(0).shape == (0, 1)
     plan.put(chunk(1, 2, 3, 4), first_ns=0, now_ns=0)

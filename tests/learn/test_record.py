@@ -203,7 +203,7 @@ async def test_a_goal_records_an_episode_until_it_is_ended(tmp_path: Path) -> No
 
 
 async def test_a_goal_that_is_canceled_discards_its_episode(tmp_path: Path) -> None:
-    """Or whose client is lost."""
+    """A goal whose client is lost does so as well."""
     async with recording(tmp_path) as (robot, episodes):
         client = robot.node.create_action_client(RecordEpisode, "/episodes/record")
         goal = await client.send_goal(RecordEpisode.Goal())

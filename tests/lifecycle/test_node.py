@@ -411,7 +411,7 @@ async def test_a_timeout_cancels_a_transition(managed: Managed) -> None:
 async def test_the_available_transitions_are_those_of_the_state(
     node: Node, managed: Managed
 ) -> None:
-    """And the graph has all of them."""
+    """The graph has all of them."""
     available = node.create_client(GetAvailableTransitions, "/managed/get_available_transitions")
     graph = node.create_client(GetAvailableTransitions, "/managed/get_transition_graph")
 

@@ -79,7 +79,7 @@ def test_both_print_the_same(robot: None, ros2: Run, aionode: Run, command: str)
 
 @pytest.mark.parametrize("node", ["/ros_peer", "/robot/aionode_robot"])
 def test_each_sets_parameters_of_the_other(robot: None, ros2: Run, aionode: Run, node: str) -> None:
-    """And reads what the other has set."""
+    """Each reads what the other has set."""
     value = aionode("param", "get", node, "speed").split()[-1]
     for run, other in ((ros2, aionode), (aionode, ros2)):
         assert "successful" in run("param", "set", node, "speed", value)

@@ -144,7 +144,7 @@ async def test_an_action_of_ros_is_canceled(node: Node) -> None:
     ("wanted", "expected"), [("goal", "goal 4 [0, 1, 1, 2]"), ("cancel", "goal 5 []")]
 )
 async def test_ros_sends_a_goal(node: Node, wanted: str, expected: str) -> None:
-    """And cancels one."""
+    """It also cancels one."""
 
     async def execute(goal: Any) -> Fibonacci.Result:
         if goal.request.order == 0:
@@ -176,7 +176,7 @@ async def test_parameters_of_ros_are_read_and_set(node: Node) -> None:
 
 
 async def test_a_killed_node_of_ros_is_gone(node: Node, environment: dict[str, str]) -> None:
-    """And a new one of its name is there, within seconds."""
+    """A new node of its name is there within seconds."""
     for _ in range(2):
         with running(
             [*PYTHON, str(PEER), "--ros-args", "-r", "__node:=killed"], environment

@@ -111,7 +111,7 @@ def test_all_tokens_of_the_format_are_filled_in(
 def test_file_line_and_date_are_those_of_the_call(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Not those of the logger's own code."""
+    """They are not those of the logger's own code."""
     monkeypatch.setenv(
         "RCUTILS_CONSOLE_OUTPUT_FORMAT", "{file_name}|{line_number}|{date_time_with_ms}"
     )
@@ -310,7 +310,7 @@ class Clock:
 
 
 def test_once_lets_the_first_message_through() -> None:
-    """And `once=False` passes all."""
+    """`once=False` lets all through."""
     log = logger()
 
     assert results(lambda i: log.info(f"{i}", once=True)) == [True, *[False] * 4]

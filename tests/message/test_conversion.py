@@ -76,7 +76,7 @@ def test_yaml_is_what_ros2_topic_echo_prints() -> None:
 
 
 def test_yaml_keeps_long_strings_on_one_line_and_letters_as_they_are() -> None:
-    """So that grep finds them."""
+    """Grep can find them."""
     text = "é " * 100 + "漢"
 
     assert to_yaml(String(data=text)) == f"data: {text}\n"

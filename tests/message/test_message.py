@@ -104,7 +104,7 @@ def test_fields_describe_type_and_default_in_order() -> None:
 
 
 def test_a_default_that_is_the_zero_is_none() -> None:
-    """So that `x: float64 = 0.0` equals a definition without a default."""
+    """`x: float64 = 0.0` then equals a definition without a default."""
     assert all(field.default is None for field in fields(Vector3))
     assert [field.default for field in fields(Quaternion)] == [None, None, None, 1.0]
 

@@ -144,7 +144,7 @@ def test_bytes_are_lists_of_numbers() -> None:
 
 
 def test_the_schema_of_a_model_names_each_message_once() -> None:
-    """So that generated clients have one type for each, in both directions."""
+    """Generated clients have one type for each, in both directions."""
     schema = Order.model_json_schema()
 
     assert set(schema["$defs"]) == {"Twist", "Vector3", "LaserScan", "Header", "Time"}

@@ -83,7 +83,7 @@ def test_a_value_has_a_type(value: object, type_: parameter.ParameterType) -> No
 
 
 def test_numpy_values_are_taken_as_pythons() -> None:
-    """So that they can be compared and written like any others."""
+    """They can be compared and written like any others."""
     assert Parameter("a", value=np.array([1, 2])).value == [1, 2]
     assert Parameter("a", value=np.float32(0.5)).type_ is Type.DOUBLE
 
@@ -509,7 +509,7 @@ def test_setting_atomically_is_all_or_nothing() -> None:
 
 
 def test_only_parameters_can_be_set() -> None:
-    """Not their messages."""
+    """Their messages cannot."""
     with pytest.raises(TypeError, match="parameter must be instance of"):
         store().set_parameters([msg.Parameter()])  # type: ignore[list-item]
 
@@ -633,7 +633,7 @@ def test_declaring_does_not_call_the_pre_callbacks() -> None:
 
 
 def test_the_newest_callback_runs_first() -> None:
-    """Of each kind."""
+    """This holds for each kind of callback."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     log: list[int] = []
@@ -730,7 +730,7 @@ def test_what_cannot_be_called_is_no_callback(kind: str) -> None:
 
 
 def test_a_removed_callback_is_not_called() -> None:
-    """And cannot be removed twice."""
+    """It cannot be removed twice."""
     parameters = store()
     log: list[object] = []
     for kind in ("pre", "on", "post"):

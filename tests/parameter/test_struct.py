@@ -186,7 +186,7 @@ def test_a_failed_declaration_leaves_no_callback_behind() -> None:
 
 
 def test_the_names_may_have_a_prefix() -> None:
-    """So that a class can be used twice."""
+    """A class can then be used twice."""
     parameters = store()
     left = declare_struct(parameters, Camera, "left")
     right = declare_struct(parameters, Camera, "right")

@@ -35,7 +35,7 @@ def test_no_garbage_is_collected_within_the_block_but_after_it() -> None:
 
 
 def test_what_an_import_creates_is_old_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Or the next collection would look through all of it, for next to no garbage."""
+    """Otherwise the next collection would search all of it, for next to no garbage."""
     monkeypatch.setattr("aionode._process.imports.FROZEN_BY_PYTHON", 1)
     gc.unfreeze()  # what tests/conftest.py has frozen
     try:

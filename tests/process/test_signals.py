@@ -323,7 +323,7 @@ aionode.run(main, args=[])
 
 @pytest.mark.parametrize("loop", ["asyncio", "uvloop"])
 def test_a_signal_that_does_not_interrupt_the_main_thread_wakes_the_loop(loop: str) -> None:
-    """Such as one that comes just before the loop sleeps: nobody can time that, so a thread's."""
+    """One that comes just before the loop sleeps cannot be timed, so a thread gets it."""
     env = {**os.environ, "AIONODE_LOOP": loop}
     with Program(IN_ANOTHER_THREAD, env=env, fresh=True) as program:
         assert program.end() == (0, "cancelled\n", "")

@@ -141,7 +141,7 @@ async def test_parts_that_fall_silent_are_stale(panel: Callable[..., Panel]) -> 
 async def test_parts_that_are_expected_are_missing_until_they_come(
     panel: Callable[..., Panel],
 ) -> None:
-    """And count as their analyzer's, whatever else it takes."""
+    """They count as their analyzer's, whatever else it takes."""
     parts = panel(**{"a.type": GENERIC, "a.path": "A", "a.expected": ["one", "two"]})
     shown = await parts.report(one=OK)
     assert shown == {"/A": "2 Error", "/A/one": "0 e", "/A/two": "3 Missing"}
@@ -163,7 +163,7 @@ async def test_parts_that_are_expected_are_missing_until_they_come(
 async def test_a_number_of_parts_may_be_expected(
     panel: Callable[..., Panel], parameters: dict[str, Any], own: str
 ) -> None:
-    """And none may be well, if stale ones are discarded."""
+    """If stale ones are discarded, having none is fine."""
     given_values = {"startswith": ["one"]} | parameters
     of_a = {f"a.{name}": value for name, value in given_values.items()}
     shown = await panel(**{"a.type": GENERIC, "a.path": "A"} | of_a).report(one=OK)
@@ -267,7 +267,7 @@ async def test_analyzers_that_cannot_be_made_are_shown(
 
 
 async def test_values_of_a_part_are_passed_on(panel: Callable[..., Panel]) -> None:
-    """And the own state lists the messages of the parts."""
+    """The group's own status lists the messages of the parts."""
     parts = panel(**ROBOT)
     values = [KeyValue(key="temperature", value="40")]
     status = DiagnosticStatus(name="/arms/a", hardware_id="7", message="warm", values=values)

@@ -132,7 +132,7 @@ async def test_jpeg_of_a_camera_is_passed_on_unchanged(
 
 
 async def test_set_capture_ends_the_pictures(start: Start, viewer: Viewer, videos: Path) -> None:
-    """And begins them again."""
+    """It also begins them again."""
     viewer.look(CameraInfo, "camera_info")
     node = start(UsbCam, video_device=str(videos / "plain.mkv"), pixel_format="rgb8", **SMALL)
     client = viewer.node.create_client(SetBool, "set_capture")

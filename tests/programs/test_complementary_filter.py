@@ -86,7 +86,7 @@ def test_gravity_takes_a_share_of_a_wrong_tilt_away() -> None:
 
 
 def test_the_magnetic_field_takes_a_share_of_a_wrong_heading_away() -> None:
-    """Also where the other sensors say nothing new."""
+    """It does so even where the other sensors say nothing new."""
     filter_ = ComplementaryFilter(gain_mag=0.5)
     filter_.update(UP, STILL, 0.01)
 

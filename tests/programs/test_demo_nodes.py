@@ -49,7 +49,7 @@ async def test_what_others_publish_is_shown_escaped(
 async def test_the_talker_in_python_counts_from_0(
     start: Start, manual_clock: ManualClock, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """And quotes otherwise."""
+    """It uses different quotes."""
     start(TalkerOfRclpy)
     await manual_clock.advance(1.0)
     await settle()

@@ -172,7 +172,7 @@ async def test_recorded_events_become_axes_and_buttons(desk: Desk) -> None:
 
 
 async def test_the_ends_of_an_axis_are_one(desk: Desk) -> None:
-    """Also the lower one, which is one step further away."""
+    """This includes the lower end, which is one step further away."""
     await desk.begin(autorepeat_rate=0.0)
     await desk.play(Event(ABS, X, -32768), Event(ABS, Y, 32767))
 
@@ -197,7 +197,7 @@ async def test_movements_within_a_moment_are_one_message(desk: Desk) -> None:
 
 
 async def test_sticky_buttons_change_with_each_press(desk: Desk) -> None:
-    """And not with the release."""
+    """They do not change with the release."""
     await desk.begin(autorepeat_rate=0.0, sticky_buttons=True)
     for value in (1, 0, 1, 0, 1, 0):
         await desk.play(Event(KEY, EAST, value))
@@ -414,7 +414,7 @@ def base(
 
 
 async def test_the_robot_moves_while_the_button_is_held(base: Callable[..., Any]) -> None:
-    """And stops at once when it is released, with one message."""
+    """It stops at once when the button is released, with one message."""
     wheels = await base()
     await wheels.hold(5, axes=(0.5, 1.0), seconds=0.5)
     assert set(wheels.speeds) == {0.5}
@@ -426,7 +426,7 @@ async def test_the_robot_moves_while_the_button_is_held(base: Callable[..., Any]
 
 
 async def test_the_turbo_button_has_scales_of_its_own(base: Callable[..., Any]) -> None:
-    """And needs no other button."""
+    """It needs no other button."""
     wheels = await base()
     await wheels.hold(4, axes=(0.0, 1.0))
 

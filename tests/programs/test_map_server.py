@@ -136,7 +136,7 @@ async def test_a_map_is_published_for_whoever_comes_late(
 async def test_another_map_is_loaded_on_request(
     make: Make, start: Start, node_factory: Callable[..., Any]
 ) -> None:
-    """And none that is not there."""
+    """A map that does not exist is not loaded."""
     server = start(MapServer)
     user = node_factory("user")
     assert await server.trigger_configure() is TransitionCallbackReturn.SUCCESS
@@ -156,7 +156,7 @@ async def test_another_map_is_loaded_on_request(
 async def test_a_map_that_cannot_be_read_is_not_configured(
     start: Start, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """So that Nav2's manager says that the robot has no map."""
+    """Nav2's manager then says that the robot has no map."""
     server = start(MapServer, yaml_filename="/nowhere.yaml")
 
     assert await server.trigger_configure() is TransitionCallbackReturn.FAILURE

@@ -79,7 +79,7 @@ async def test_keys_drive_while_simulated_time_stands_still(
 async def test_topics_are_found_while_simulated_time_stands_still(
     start: Start, node_factory: Callable[..., Any], manual_clock: ManualClock
 ) -> None:
-    """Such as those of a robot whose simulator is paused."""
+    """A robot whose simulator is paused has such topics."""
     heard: list[str] = []
     node = node_factory("talker")
     publisher = node.create_publisher(String, "chatter", 10)

@@ -114,7 +114,7 @@ async def test_late_subscribers_receive_fixed_joints_and_the_description(
 
 
 async def test_each_kind_of_joint_moves_its_link(robot: Callable[..., Any]) -> None:
-    """Also one that mimics another one, whose position nobody publishes."""
+    """A joint that mimics another one, and whose position nobody publishes, is included."""
     _, watcher = robot()
 
     links = await watcher.move(1.0, lift=np.pi / 2, slide=0.25)

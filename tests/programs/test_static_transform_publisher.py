@@ -79,7 +79,7 @@ def test_arguments_that_say_none_are_refused_in_the_words_of_tf2_ros(args: str, 
 async def test_late_subscribers_receive_the_transform(
     node_factory: Callable[..., Any],
 ) -> None:
-    """And the parameters say what it is."""
+    """The parameters say what it is."""
     node = node_factory(StaticTransformPublisher, given("1 2 3 0 0 0 a b"))
     await settle()
 

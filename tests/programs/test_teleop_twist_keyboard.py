@@ -49,7 +49,7 @@ def test_each_key_moves_as_in_the_original() -> None:
 
 
 def test_keys_change_speeds_by_a_tenth() -> None:
-    """And what moves goes on, at the new speed."""
+    """A base that moves continues at the new speed."""
     keys = Keys()
     keys.press("i")
 
@@ -100,7 +100,7 @@ def driving(
 async def test_the_command_of_a_key_stands_until_the_next(
     driving: Callable[..., Any], manual_clock: ManualClock
 ) -> None:
-    """And is said again and again, so that the base knows that its driver lives."""
+    """It is repeated, so that the base knows that its driver is alive."""
     async with driving() as (node, wheels):
         node.press("i")
         await settle()

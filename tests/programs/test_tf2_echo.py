@@ -64,7 +64,7 @@ async def test_it_waits_for_the_first_transform_and_then_prints_at_its_rate(
     node_factory: Callable[..., Any],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """And says what it waits for."""
+    """It says what it waits for."""
     texts: list[str] = []
     start(Echo, ("odom", "base"), 2.0, texts.append)
     await manual_clock.advance(1.1)

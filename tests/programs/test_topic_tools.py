@@ -68,7 +68,7 @@ def ready(manual_clock: ManualClock) -> Callable[[], Awaitable[None]]:
 async def test_a_relay_publishes_what_it_receives(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
 ) -> None:
-    """Of a type that is known by its publishers only, on a topic with the suffix."""
+    """Only publishers know the type, and the output topic has the suffix."""
     publisher = bench.node.create_publisher(String, "chatter", 10)
     start(Relay, "chatter")
     bench.listen("chatter_relay")
@@ -288,7 +288,7 @@ def test_options_give_the_qos_of_transform(options: list[str], expected: Any) ->
 async def test_what_is_no_expression_is_refused_at_the_start(
     start: Start, words: list[str], text: str
 ) -> None:
-    """Not at the first message."""
+    """The error does not come with the first message."""
     with pytest.raises(CommandError, match=text):
         start(Transform, parser().parse_args(words))
 
@@ -296,7 +296,7 @@ async def test_what_is_no_expression_is_refused_at_the_start(
 async def test_demux_publishes_on_the_output_that_is_selected(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
 ) -> None:
-    """Or on none; topics are added while it runs, and the one that is selected stays."""
+    """It may be none; topics are added while it runs, and the selected one stays."""
     publisher = bench.node.create_publisher(String, "in", 10)
     start(Demux, "in", "one", "two")
     one = bench.node.create_subscription(String, "one", lambda msg: bench.heard.append(msg.data))

@@ -124,7 +124,7 @@ async def test_a_turtle_goes_aside_only_if_it_is_holonomic(pond: Pond) -> None:
 
 
 async def test_walls_stop_a_turtle(pond: Pond, capsys: pytest.CaptureFixture[str]) -> None:
-    """And the log says so in the words of the original."""
+    """The log says so in the words of the original."""
     await pond.drive(0.9, x=10.0)
 
     assert pond.pose.x == np.float32(499 / 45)
@@ -420,7 +420,7 @@ def test_the_commands_of_the_tutorials_work_word_for_word(environment: dict[str,
 @pytest.mark.timeout(90)
 @pytest.mark.one_loop
 def test_arrow_keys_of_a_terminal_move_the_turtle(environment: dict[str, str]) -> None:
-    """And 'q' ends the program."""
+    """'q' ends the program."""
     pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 
     def open_terminal(*words: str) -> Any:

@@ -502,7 +502,7 @@ def test_the_services_of_an_action_can_be_watched(
 
 
 def test_a_destroyed_server_is_not_found(node: Node) -> None:
-    """And its node continues without it."""
+    """Its node continues without it."""
     server = Server(node)
     client = client_of(node)
 

@@ -570,7 +570,7 @@ print("ended", flush=True)
 
 
 def test_a_signal_that_does_not_interrupt_a_wait_is_handled(tmp_path: Path) -> None:
-    """Such as one that comes just before the wait: nobody can time that, so one of a thread."""
+    """One that comes just before the wait cannot be timed, so a thread gets it."""
     program = tmp_path / "sleeping.py"
     program.write_text(SIGNAL_IN_A_THREAD)
     process = start(

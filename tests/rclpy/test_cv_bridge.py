@@ -187,7 +187,7 @@ def test_encodings_have_the_numbers_of_opencv() -> None:
 
 
 def test_what_needs_opencv_says_so_when_it_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And not before: most programs only pass images on."""
+    """It does not do so before: most programs only pass images on."""
     monkeypatch.setitem(sys.modules, "cv2", None)
 
     with pytest.raises(ModuleNotFoundError, match="cv2"):
@@ -232,7 +232,7 @@ def test_an_image_is_compressed_and_read_again(ending: str, channels: tuple[int,
 
 
 def test_data_that_is_no_image_is_refused() -> None:
-    """Such as from a camera that breaks off in the middle."""
+    """A camera that fails in the middle sends such data."""
     pytest.importorskip("cv2")
 
     with pytest.raises(CvBridgeError, match="5 bytes of the format 'jpeg' are no image"):

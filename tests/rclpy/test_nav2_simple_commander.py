@@ -225,7 +225,7 @@ NUMBERS = st.floats(-50, 50)
 
 @given(NUMBERS, NUMBERS, NUMBERS, NUMBERS)
 def test_a_line_ends(x0: float, y0: float, x1: float, y1: float) -> None:
-    """Also where more digits than count are between its points; the original goes on for ever."""
+    """It ends even where floats cannot resolve its steps; the original goes on forever."""
     if (x0, y0) != (x1, y1):
         assert points(LineIterator(x0, y0, x1, y1, 0.5))[0] == (x0, y0)
 

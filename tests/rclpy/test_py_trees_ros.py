@@ -259,7 +259,7 @@ def test_without_a_goal_a_behaviour_fails(node: Any) -> None:
 
 
 def test_a_server_that_is_not_there_is_an_error_after_a_time(node: Any) -> None:
-    """And the behaviour says which."""
+    """The behaviour says which server is missing."""
     behaviour = action_clients.FromConstant(
         "dock", DockAction, "dock", DockAction.Goal(), wait_for_server_timeout_sec=0.01
     )

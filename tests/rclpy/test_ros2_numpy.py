@@ -59,7 +59,7 @@ def test_a_point_is_divided_by_its_fourth_coordinate() -> None:
     ],
 )
 def test_transforms_and_poses_are_matrices(message: Any) -> None:
-    """And several of them are an array of matrices."""
+    """Several of them are an array of matrices."""
     matrix = ros2_numpy.numpify(message)
 
     assert np.allclose(matrix @ [0, 0, 1, 1], [1.0, 2.0, 2.0, 1.0])
@@ -119,7 +119,7 @@ def test_a_message_with_too_little_data_is_refused(message: Any) -> None:
 
 
 def test_unknown_cells_of_a_map_are_masked() -> None:
-    """So that means and sums ignore them."""
+    """Means and sums then ignore them."""
     cells = np.full((3, 4), -1, np.int8)
     cells[1, 1:3] = 100
 

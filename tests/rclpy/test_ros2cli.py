@@ -144,7 +144,7 @@ def test_topics_and_their_classes(asking: Any, capsys: pytest.CaptureFixture[str
 
 
 def test_services_and_their_classes(asking: Any) -> None:
-    """And the error of one that is not there."""
+    """A service that does not exist is an error."""
     api = ros2service.api
 
     assert "/a/power" in api.get_service_names(node=asking)
@@ -180,7 +180,7 @@ def test_parameters_are_listed_described_set_and_read(asking: Any) -> None:
 def test_a_parameter_file_is_loaded(
     asking: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """And what became of each parameter is printed."""
+    """The outcome of each parameter is printed."""
     file = tmp_path / "params.yaml"
     file.write_text("/a/robot:\n  ros__parameters:\n    speed: 3.0\n")
 
@@ -243,7 +243,7 @@ def test_a_node_for_a_command_begins_and_ends_rclpy(alone: None) -> None:
 
 
 def test_what_is_waited_for_has_a_limit() -> None:
-    """And is asked once more at its end."""
+    """The condition is checked once more at the end."""
     answers = iter([False, False, True])
 
     assert wait_for(lambda: next(answers), -1, period=0.001)

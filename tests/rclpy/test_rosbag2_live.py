@@ -114,7 +114,7 @@ async def test_a_player_plays_in_its_thread(node: Node, tmp_path: Path) -> None:
 
 
 def test_the_older_form_plays_to_the_end(tmp_path: Path) -> None:
-    """And a burst returns how many messages it has sent."""
+    """A burst returns how many messages it has sent."""
     write(tmp_path / "run", 5)
     player = rosbag2_py.Player("error")
     player.play(options_of(tmp_path / "run"), rosbag2_py.PlayOptions(rate=100))

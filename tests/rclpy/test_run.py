@@ -188,7 +188,7 @@ def test_a_program_that_only_defines_main_does_not_end_as_if_it_had_run(folder: 
 
 
 def test_a_module_that_is_not_there_is_named_with_what_is_close(folder: Path) -> None:
-    """And with the places that were searched."""
+    """The error also names the places that were searched."""
     done = run(folder, "-m", "progam")
 
     assert done.returncode == 2
@@ -224,7 +224,7 @@ with rclpy.init():
 
 
 def test_classes_and_errors_are_shown_by_their_names_in_rclpy(folder: Path) -> None:
-    """Also those of modules that come with others, as that of Node with `create_node`."""
+    """Modules that come with others are included, such as that of Node with `create_node`."""
     (folder / "program.py").write_text(NAMES)
 
     done = run(folder, "program.py")

@@ -57,7 +57,7 @@ def test_euler_angles_are_quaternions_and_back(axes: Any, quaternion: Any, angle
 
 @pytest.mark.parametrize("middle", [-1.1, 0.0, math.pi / 2, -math.pi / 2, math.pi])
 def test_euler_angles_of_every_sequence_make_their_matrix(middle: float) -> None:
-    """Also where the first and last axis coincide."""
+    """The first and last axis may coincide."""
     for axes in AXES:
         matrix = tf.euler_matrix(0.4, middle, 2.3, axes)
 
@@ -316,7 +316,7 @@ def test_lengths_are_of_vectors_along_an_axis() -> None:
 
 
 def test_a_matrix_has_its_inverse() -> None:
-    """Of any size."""
+    """It may have any size."""
     matrix = np.random.default_rng(0).normal(size=(5, 5))
 
     assert same(tf.inverse_matrix(matrix) @ matrix, np.identity(5))

@@ -413,7 +413,7 @@ async def test_a_required_member_ends_the_system(system: System, output: io.Stri
 async def test_the_exit_status_is_that_of_the_first_that_failed_for_good(
     system: System, tmp_path: Path
 ) -> None:
-    """Not that of a member that succeeded after a restart, nor of those that ended later."""
+    """A member that succeeded after a restart, or ended later, does not count."""
     script = "[ -e $0 ] || { : >$0; exit 2; }"
     async with system:
         again = ["sh", "-c", script, f"{tmp_path}/once"]

@@ -421,7 +421,7 @@ def test_no_data_above_the_common_ancestor_is_no_obstacle() -> None:
 
 
 def test_repeated_stamps_make_no_invalid_numbers() -> None:
-    """Of two poses with the same time, one is used."""
+    """If two poses have the same time, one of them is used."""
     core = core_with(transform("a", "b", 4.0, yaw=0.0), transform("a", "b", 4.0, yaw=1.0))
     for time in (at(4), LATEST):
         assert not any(map(math.isnan, parts(core.lookup_transform_core("a", "b", time))))

@@ -478,7 +478,7 @@ async def test_cancel_returns_the_answer_of_the_server(ends: Ends) -> None:
 
 
 async def test_a_refused_cancel_request_says_so(ends: Ends) -> None:
-    """And the goal continues."""
+    """The goal continues."""
     ends.server.register_cancel_callback(None)
     sent, goal = await begin(ends)
 

@@ -338,7 +338,7 @@ async def test_a_loop_that_was_left_leaves_its_goal_alone(program: Program) -> N
 
 @in_process
 async def test_a_node_that_fails_can_still_await_a_goal_in_finally(program: Program) -> None:
-    """Such as a goal to return home: as in a destroyed node, results arrive until callbacks end."""
+    """A goal to return home is one; as in a destroyed node, results arrive until callbacks end."""
     results = asyncio.Queue[Any]()
     begun = asyncio.Event()
 

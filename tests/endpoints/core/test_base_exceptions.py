@@ -95,7 +95,7 @@ def mistake(request: pytest.FixtureRequest) -> Callable[[], None]:
 async def test_a_subscription_goes_on_with_the_next_message(
     node: Node, kind: str, mistake: Callable[[], None]
 ) -> None:
-    """Also with those that were queued behind the first one, and without `settle` between."""
+    """It also takes those queued behind the first one, without `settle` in between."""
     failing = Failing(kind, mistake)
     subscription = node.create_subscription(
         Int32, "numbers", one_argument(failing), 10, on_error="log", **failing.options
@@ -188,7 +188,7 @@ async def test_an_event_callback_fails_its_node(node: Node, mistake: Callable[[]
 
 
 async def test_a_transition_fails(mistake: Callable[[], None]) -> None:
-    """And is reported, as for any error of ``on_configure``."""
+    """The failure is reported, as for any error of ``on_configure``."""
 
     class Managed(LifecycleNode):
         def on_configure(self, state: Any) -> TransitionCallbackReturn:

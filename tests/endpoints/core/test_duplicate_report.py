@@ -42,7 +42,7 @@ def remote_server(name: str, node: str, number: int = 1) -> EndpointInfo:
 async def test_two_nodes_of_one_name_are_reported_once(
     node_factory: Callable[..., Node], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Not once more for each of the services that every node has."""
+    """They are not reported again for each of the services that every node has."""
     node_factory("camera")
     assert warnings(caplog) == []
 

@@ -354,7 +354,7 @@ async def test_a_slow_callback_is_reported(
 
 
 async def test_callbacks_run_in_the_context_of_their_node(context: Context) -> None:
-    """Not in that of the transport's event, where context variables say something else."""
+    """In the context of the transport's event, context variables would have other values."""
     seen: list[str] = []
     place.set("node")
     async with Node("node", context=context) as node:
@@ -632,7 +632,7 @@ async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
 
 
 async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
-    """And a node that continues does so without its consumer."""
+    """A node that continues does so without its consumer."""
     service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
     await settle()
     request = Asked()

@@ -386,7 +386,7 @@ async def test_a_message_counts_from_its_arrival(
 async def test_a_full_queue_that_keeps_all_is_emptied(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """And its publisher, which waits for room, continues."""
+    """Its publisher, which waits for room, continues."""
 
     async def drive(msg: Int32) -> None:
         driven.drive(msg)
@@ -547,7 +547,7 @@ async def test_the_end_of_the_node_is_no_silence(
 async def test_a_destroyed_subscription_is_never_silent(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Not even if the alarm has rung, or the publisher goes with it."""
+    """This holds even if the alarm has rung, or the publisher is destroyed with it."""
     subscription = wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     publisher = teleop.create_publisher(Int32, "n", 10)
     send(publisher, 1)

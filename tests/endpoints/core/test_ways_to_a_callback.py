@@ -202,7 +202,7 @@ def test_a_thread_agrees_but_for_what_threads_cannot_raise(bursts: list[list[str
 def test_a_full_queue_drops_the_same_of_all_messages(
     depth: int, count: int, keep_all: bool
 ) -> None:
-    """Of this process or another, with its info or without."""
+    """Messages come from this process or another, and are read with their info or without."""
     history = HistoryPolicy.KEEP_ALL if keep_all else HistoryPolicy.KEEP_LAST
     profile = QoSProfile(depth=depth, history=history)
     queued = {name: way for name, way in WAYS.items() if not name.startswith("inline")}

@@ -62,7 +62,7 @@ async def test_an_incompatible_type_is_an_event_at_both_ends(pair: Pair) -> None
 
 
 async def test_messages_that_are_missing_are_an_event(node: Node) -> None:
-    """Of publishers in other processes; within one nothing is lost."""
+    """The publishers are in other processes; within one, nothing is lost."""
     got: list[QoSMessageLostInfo] = []
     subscription = node.create_subscription(
         Int32, "n", event_callbacks=SubscriptionEventCallbacks(message_lost=got.append)

@@ -23,7 +23,7 @@ STEPS = st.lists(
 
 @given(STEPS, st.integers(0, 3))
 def test_it_holds_what_has_not_expired_in_order(steps: list[tuple[str, int]], queued: int) -> None:
-    """And counts each dropped item once."""
+    """Each dropped item is counted once."""
     now_ns = 0
     expired = 0
     number = queued

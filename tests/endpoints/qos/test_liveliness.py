@@ -173,7 +173,7 @@ async def test_without_a_lease_a_publisher_lives_while_it_is_there(pair: Pair) -
 
 
 async def test_a_destroyed_publisher_asserts_nothing(pair: Pair) -> None:
-    """Nor does it publish anything."""
+    """It publishes nothing either."""
     publisher = pair.talker.create_publisher(Int32, "n", MANUAL)
     publisher.destroy()
     with pytest.raises(EntityDestroyedError, match="assert liveliness"):

@@ -38,7 +38,7 @@ class Driven:
 
 
 async def test_a_topic_falls_silent(pair: Pair) -> None:
-    """And resumes."""
+    """The topic then resumes."""
     driven = Driven(pair, 0.3)
     publisher = pair.talker.create_publisher(Int32, "n", 10)
     await pair.know_each_other(publisher, driven.subscription)

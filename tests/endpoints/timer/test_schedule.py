@@ -36,7 +36,7 @@ def test_a_call_is_followed_by_the_next_point_of_the_grid(
 
 
 def test_the_first_call_is_one_period_after_the_start() -> None:
-    """Not at the start (T1)."""
+    """There is no call at the start (T1)."""
     schedule = Schedule(PERIOD, 1000)
     assert [now for now in (1000, 1099, 1100) if schedule.is_ready(now)] == [1100]
     assert schedule.until_next_ns(1030) == 70
@@ -54,7 +54,7 @@ def test_a_schedule_may_start_canceled() -> None:
 
 
 def test_period_zero_is_always_ready() -> None:
-    """And leaves out nothing (T2)."""
+    """It leaves out nothing (T2)."""
     schedule = Schedule(0, 1000)
     for now in (1000, 1000, 1700):
         assert schedule.is_ready(now)
@@ -148,7 +148,7 @@ def test_every_call_is_planned_on_the_grid(period: int, start: int, steps: list[
 
 
 def test_a_million_calls_do_not_drift() -> None:
-    """Also with a period that no float can hold, each call being late by another bit."""
+    """The period may be one that no float can hold, with each call late by a different amount."""
     period, start = 33_333_333, 1_700_000_000_123_456_789
     schedule = Schedule(period, start)
     for n in range(1, 1_000_001):

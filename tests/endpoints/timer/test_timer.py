@@ -389,7 +389,7 @@ async def test_another_callback_can_be_set() -> None:
 
 
 async def test_destroying_ends_the_callback_that_runs() -> None:
-    """And the timer forgets its clock. Twice is allowed, as is cancelling a destroyed timer."""
+    """The timer forgets its clock. It may be destroyed twice, and cancelled afterwards."""
     tickers = living(Ticker)
     bench = Bench()
     ended: list[str] = []

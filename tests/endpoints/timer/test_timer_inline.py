@@ -251,7 +251,7 @@ async def test_more_timers_than_there_are_files_for_share_one(
 
 @pytest.mark.parametrize("end", [Timer.cancel, Timer.destroy])
 async def test_a_timer_gives_its_file_back(node: Node, end: Any) -> None:
-    """Also when nothing rings any more."""
+    """It does so even when no timer will ring again."""
     before = timerfd.PeriodicAlarm.count
     calls = Calls()
     timer = node.create_timer(PERIOD_S, calls)

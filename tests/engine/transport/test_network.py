@@ -327,7 +327,7 @@ def test_only_subnet_listens_beyond_loopback(discovery_range: DiscoveryRange) ->
 
 
 def test_off_neither_listens_nor_dials() -> None:
-    """Not even static peers."""
+    """Static peers are not dialled either."""
     network = Network(discovery_range=DiscoveryRange.OFF, static_peers=("tcp/a:1",))
 
     assert probed_ports(network) == ()

@@ -170,7 +170,7 @@ def test_a_subscription_without_reliability_takes_what_comes() -> None:
 
 
 def test_keys_are_names_without_the_first_slash() -> None:
-    """And a namespace is what they begin with."""
+    """A namespace is the part with which they begin."""
     assert bridge_key("/bot1/chatter") == "bot1/chatter"
     assert (namespace_prefix("/"), namespace_prefix("/bot1")) == ("", "bot1/")
 

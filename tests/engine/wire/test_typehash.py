@@ -46,7 +46,7 @@ def test_the_parts_of_an_action_have_the_hashes_that_their_keys_need() -> None:
 
 @pytest.mark.parametrize("name", vectors("vectors")["rihs01_canonical_json"])
 def test_what_is_hashed_is_the_same_text(name: str) -> None:
-    """So that a difference can be found when a hash is wrong."""
+    """A difference can be found when a hash is wrong."""
     assert json.dumps(describe(type_of(name))) == vectors("vectors")["rihs01_canonical_json"][name]
 
 

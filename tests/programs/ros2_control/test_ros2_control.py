@@ -110,7 +110,7 @@ def test_mocks_are_deaf_or_shifted_if_their_parameters_say_so() -> None:
 
 
 def test_sensors_and_gpios_of_mocks_are_commanded_if_their_parameters_say_so() -> None:
-    """So that somebody can play their part."""
+    """Somebody can then play their part."""
     hardware = hardware_of(urdf(mock_sensor_commands="true"))
     hardware.commands["force/z"] = 9.0
     hardware.read(0.1)
@@ -507,7 +507,7 @@ async def test_a_spawner_gives_each_controller_options_of_its_own(
 
 
 async def test_a_spawner_that_fails_says_at_which_step(robot: Callable[..., Any]) -> None:
-    """And where the reason is."""
+    """It also says where to find the reason."""
     bot = await robot()
 
     with pytest.raises(CommandError, match="Failed loading controller far; the log of /contr"):

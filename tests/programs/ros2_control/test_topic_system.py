@@ -46,7 +46,7 @@ def speeds(msgs: list[Any]) -> list[float]:
 
 
 async def test_states_come_from_a_topic(robot: Callable[..., Any]) -> None:
-    """Also those of a joint that mimics another."""
+    """The states include those of a joint that mimics another."""
     bot = await robot(ARM)
     await say(bot, "lift", "left", "unknown", position=[0.5, 3.0, 1.0], velocity=[0.0, 2.0, 1.0])
     states = bot.manager.hardware.states

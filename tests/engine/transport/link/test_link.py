@@ -77,7 +77,7 @@ async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
 async def test_a_message_that_is_held_has_the_time_of_its_arrival(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Not the time of its release, or measured rates would be those of the hand-over."""
+    """With the time of its release, measured rates would be those of the hand-over."""
     monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.2)
     monkeypatch.setattr(LinkReader, "deliver", lambda *_: None)  # # Zenoh delivers nothing
     async with two_nodes() as nodes:

@@ -328,7 +328,7 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
     ids=["best effort", "reliable"],
 )
 async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
-    """Not once per message; a best-effort stream is not acknowledged at all."""
+    """It is not acknowledged per message, and a best-effort stream not at all."""
     async with two_nodes() as (a, b):
         with raw_session() as session:
             overheard = Overheard(session, "n")

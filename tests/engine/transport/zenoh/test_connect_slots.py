@@ -88,7 +88,7 @@ async def test_nobody_waits_while_a_processor_is_free(
 async def test_nobody_waits_if_there_is_no_other_process(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nor if a context does not look for any, or no port is available for slots."""
+    """The same holds if a context does not look for any, or no port is available for slots."""
     monkeypatch.setattr(_connect_slots, "SLOT_S", 1000.0)
     alone = network_from({"AIONODE_MEETING_PORTS": ",".join(map(str, free_ports(6)))})
     off = network_from(os.environ, discovery_range=DiscoveryRange.OFF)

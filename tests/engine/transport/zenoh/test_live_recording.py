@@ -70,7 +70,7 @@ def test_each_token_is_read_and_written_back() -> None:
 
 @pytest.mark.parametrize("sample", RECORDED["samples"], ids=lambda sample: sample["key"][3:20])
 def test_the_gid_of_a_sample_is_that_of_its_token(sample: dict[str, Any]) -> None:
-    """So that a message is attributed to its publisher."""
+    """A message is attributed to its publisher by it."""
     key = parse_data_key(sample["key"])
     extra = attachment.unpack(bytes.fromhex(sample["attachment"]))
     assert key is not None

@@ -34,7 +34,7 @@ def group() -> int:
 
 
 def test_a_session_is_listed_with_its_port_until_it_is_closed(group: int) -> None:
-    """Also when its process is killed, which closes everything."""
+    """Killing its process has the same effect, since that closes everything."""
     with closing(announce(group, 4711)), closing(announce(group, 4712)):
         assert listed(group) == {4711, 4712}
 
@@ -42,7 +42,7 @@ def test_a_session_is_listed_with_its_port_until_it_is_closed(group: int) -> Non
 
 
 def test_a_session_is_listed_with_its_process(group: int) -> None:
-    """So that a command can name the one that does not answer."""
+    """A command can name the process that does not answer."""
     with closing(announce(group, 4711)):
         found = processes(group)
 
@@ -109,7 +109,7 @@ def test_there_is_no_list_where_the_system_hides_it(
 
 
 def test_later_ids_are_greater_and_have_no_leading_zero() -> None:
-    """Of two sessions that gossip introduces, Zenoh has the one with the greater id dial."""
+    """When gossip introduces two sessions, Zenoh has the one with the greater id dial."""
     early = [new_participant() for _ in range(3)]
     while (late := new_participant())[:13] == early[-1][:13]:
         pass

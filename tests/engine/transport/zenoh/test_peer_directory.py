@@ -132,7 +132,7 @@ async def test_a_plain_session_is_an_unannounced_peer_while_it_is_connected(hear
 
 
 async def test_unannounced_peers_are_reported_with_the_connection(heard: Heard) -> None:
-    """Not in a later turn of the loop, in which something may be published."""
+    """In a later turn of the loop, something may already be published."""
     seen: list[bool] = []
     there = asyncio.Event()
 
@@ -178,7 +178,7 @@ async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> No
 
 @pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
 async def test_a_context_is_no_unannounced_peer(heard: Heard, domain_id: int) -> None:
-    """Of any domain, and before it has a node."""
+    """This holds in any domain, and before it has a node."""
     connections = heard.transport.session_state.connections
     async with context("b2", domain_id=domain_id):
         await until(lambda: "b2" in connections.kinds)

@@ -42,7 +42,7 @@ def test_only_ports_that_accept_a_connection_answer() -> None:
 
 
 def test_ports_answer_in_a_process_with_more_than_1023_descriptors() -> None:
-    """Such as one of several contexts among a hundred; select() takes no higher number."""
+    """One of several contexts among a hundred has as many; select() takes no higher number."""
     with ExitStack() as stack, closing(socket.create_server(("127.0.0.1", 0))) as server:
         try:
             for _ in range(1024):

@@ -126,7 +126,7 @@ async def test_a_participant_that_has_declared_itself_is_left_alone(scene: Scene
 
 
 async def test_no_connection_is_cut_while_others_are_being_made(scene: Scene) -> None:
-    """Of 100 contexts that started at once, each cut others that were merely slow."""
+    """When 100 contexts started at once, each cut others that were merely slow."""
     scene.return_silently("b2")
     for number in range(10):
         await scene.step(0.4 * DECLARED_S)

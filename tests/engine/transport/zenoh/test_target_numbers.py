@@ -57,12 +57,12 @@ def test_a_loss_is_missing_before_the_rise_is_known() -> None:
 
 
 def test_a_subscription_that_went_long_ago_is_a_target() -> None:
-    """Such as a viewer that was restarted before this program came."""
+    """A viewer that was restarted before this program started is one."""
     assert heard(0, [3, 6, 9, 12, 15]) == [3, 4, 5, 6, 7]
 
 
 def test_a_subscription_that_came_and_went_unseen_is_a_target_after_a_while() -> None:
-    """Such as an echo of one message: what was taken for losses ends with the fifth."""
+    """An echo of one message is one: from the fifth message on, apparent losses end."""
     assert lost(heard(0, [1, 2, 3, 5, 7, 9, 11, 13, 15, 17])) == 4
 
 

@@ -334,7 +334,7 @@ def test_encode_and_check_agree_on_what_fits(message: Mixed, field: str, odd: An
 
 
 def test_an_invalid_value_inside_a_sequence_is_named_with_its_index() -> None:
-    """So that it can be found among thousands."""
+    """It can be found among thousands."""
     message = PoseArray()
     message.poses = [Point()]  # type: ignore[list-item] # that is what is tested
 
@@ -569,7 +569,7 @@ def test_text_that_is_no_unicode_is_logged_with_its_place(caplog: pytest.LogCapt
 
 
 def test_the_path_of_an_error_has_the_index() -> None:
-    """Of sequences, and of what is nested in them."""
+    """The index is that of a sequence, or of what is nested in one."""
     encoded = cdr.encode(JointState(name=["abc", "def"]))
     damaged = encoded[: encoded.index(b"def") + 1]
 

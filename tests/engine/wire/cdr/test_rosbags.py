@@ -127,7 +127,7 @@ def test_rosbags_and_aionode_read_each_other_in_every_class(package: str) -> Non
 
 @pytest.mark.slow
 def test_rosbags_and_aionode_read_the_defaults_of_classes_of_every_kind() -> None:
-    """So that each kind of field is compared in every run."""
+    """Every run compares each kind of field."""
     for name in CLASSES.keys() & various_classes():
         cls = CLASSES[name]
         check_both_ways(cdr.decode(cls, cdr.encode(cls())))  # the 0.3 of a float32 is rounded
