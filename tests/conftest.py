@@ -49,9 +49,12 @@ settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=20
 # Collection creates half a million objects that all stay: garbage collection would double its time.
 gc.disable()
 
-# The parent of the tests may ignore SIGHUP, as nohup does; every process that they start would too.
+# The parent of the tests may ignore SIGHUP, as nohup does, and SIGINT, as a shell's background jobs
+# do; every process that the tests start would too.
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 share_bytecode()
 
