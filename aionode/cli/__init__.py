@@ -64,5 +64,6 @@ def execute(module: str, *arguments: str) -> None:
     import runpy
 
     sys.argv[1:] = arguments
-    sys.path[0] = ""  # the current folder
+    if not sys.flags.safe_path:
+        sys.path[0] = ""  # the current folder
     runpy.run_module(module, run_name="__main__")

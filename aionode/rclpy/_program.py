@@ -70,6 +70,8 @@ def main(argv: Sequence[str]) -> None:
         install(interfaces=folders["--interfaces"], workspace=workspace)
     except (AionodeError, OSError) as error:
         fail(str(error))
+    if sys.flags.safe_path:
+        sys.path.insert(0, "")  # what `python -P` leaves out, and what is replaced below
     if name == CHECK:
         list_imports(arguments)
     sys.path[:1] = folders["--path"] or sys.path[:1]

@@ -102,6 +102,29 @@ def test_a_program_runs_at_once_in_the_process_of_the_command(folder: Path) -> N
     assert done.stdout == "['own.py', '--help'] ['runpy']\n"
 
 
+@pytest.mark.parametrize("command", [("aionode", "run"), ("aionode.rclpy",)])
+def test_python_that_leaves_the_current_folder_out_keeps_its_path(
+    folder: Path, command: tuple[str, ...]
+) -> None:
+    """With ``-P``, the first entry is not that of a program."""
+    (folder / "elsewhere").mkdir()
+    (folder / "elsewhere" / "other.py").write_text("TEXT = 'found'\n")
+    (folder / "own.py").write_text("import rclpy, other, helper\nprint(other.TEXT, helper.TEXT)\n")
+    path = os.pathsep.join([str(folder / "elsewhere"), str(Path(__file__).parents[2])])
+
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", *command, "own.py"],
+        env={**os.environ, "PYTHONPATH": path},
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=50,
+        check=False,
+    )
+
+    assert (done.stdout, done.stderr) == ("found hi\n", "")
+
+
 def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
     """Like ``python -m``, with the whole path in its arguments."""
     done = run(folder, "run", "-m", "program", "exit", module="aionode")
