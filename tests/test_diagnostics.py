@@ -44,7 +44,7 @@ async def node(node_factory: Callable[..., Node], manual_clock: ManualClock) -> 
 
 @pytest.fixture
 async def heard(node: Node) -> list[DiagnosticArray]:
-    """What is published on /diagnostics."""
+    """The statuses published on /diagnostics."""
     arrays: list[DiagnosticArray] = []
     node.create_subscription(DiagnosticArray, "/diagnostics", arrays.append, 100)
     return arrays
@@ -249,7 +249,7 @@ async def test_a_frequency_without_time_is_no_error(node: Node) -> None:
 async def test_ages_of_stamps_are_judged(
     node: Node, ages: list[float], level: bytes, message: str
 ) -> None:
-    """Those since the last run."""
+    """The stamps since the last run count."""
     task = TimeStampStatus(clock=node.get_clock())
     now = node.get_clock().now().nanoseconds / 1e9
     for age in ages:

@@ -116,7 +116,7 @@ def test_the_reference_has_signatures_for_those_who_read_the_files() -> None:
 def test_the_code_of_a_page_runs(
     page: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """What is not quoted is run, the blocks of a page one after the other."""
+    """Code that is not quoted is run, the blocks of a page one after the other."""
     definitions = tmp_path / "ros_ws" / "src" / "tutorial" / "msg"
     definitions.mkdir(parents=True)
     (definitions / "Words.msg").write_text("string text\n", encoding="utf-8")

@@ -58,7 +58,7 @@ def test_a_long_value_makes_no_long_error(
 def test_a_variable_of_the_environment_is_not_repeated_at_length(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Neither is what is read from elsewhere."""
+    """Values that are read from elsewhere are not either."""
     monkeypatch.setenv("ROS_DOMAIN_ID", "9" * 100_000)
     with pytest.raises(ValueError, match="ROS_DOMAIN_ID") as caught:
         Context(transport="local")

@@ -274,7 +274,7 @@ def test_an_incompatible_policy_is_named_at_both_ends(policy: str) -> None:
 
 
 def test_lost_messages_are_all_told(domain: int) -> None:
-    """What was published is received or lost."""
+    """Each published message is received or counted as lost."""
     name = "aionode.examples.quality_of_service.message_lost"
     with running("-m", name, domain=domain) as program:
         text = program.rest()
@@ -301,7 +301,7 @@ def test_timers_keep_their_grid() -> None:
 
 
 def test_overload_counts_every_message() -> None:
-    """What was sent is received, dropped or waiting."""
+    """Each sent message is received, dropped or waiting."""
     with running("-m", "aionode.examples.overload", "--seconds", "1") as program:
         line = program.line_with("sent = ")
         program.rest()

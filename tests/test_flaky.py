@@ -8,7 +8,7 @@ from tests.flaky import counted, read, write
 
 
 def test_a_test_that_passed_when_it_was_run_again_is_counted() -> None:
-    """What fails most often is mended first, so it stands first."""
+    """The test that fails most often comes first, since it is mended first."""
     table = {"a": (1, "2026-01-01"), "b": (1, "2026-01-01")}
     table = counted(table, {"b", "c"}, "2026-01-02")
 

@@ -207,7 +207,7 @@ def test_jpeg_is_a_picture_for_browsers() -> None:
 def test_an_image_that_contradicts_itself_names_the_field(
     values: dict[str, Any], text: str
 ) -> None:
-    """What other programs send is looked at before it is read."""
+    """Messages of other programs are checked before they are read."""
     image = from_numpy(BGR, "bgr8")
     for name, value in values.items():
         setattr(image, name, value)
@@ -391,7 +391,7 @@ def test_a_large_rvl_picture_is_read_and_a_bomb_is_not() -> None:
 
 @pytest.mark.parametrize("side", [1, 2000], ids=["long", "without progress"])
 def test_rvl_takes_no_more_memory_than_its_picture_needs(side: int) -> None:
-    """Neither bytes after a picture nor runs of no pixels at all are unpacked as a whole."""
+    """Bytes after a picture, and runs of no pixels at all, are not unpacked as a whole."""
     data = bytes(12) + struct.pack("<II", side, side) + bytes(1 << 20)
     tracemalloc.start()
     try:

@@ -59,7 +59,7 @@ def test_equal_stamps_belong_together() -> None:
 
 
 def test_scrambled_sequences_are_put_together() -> None:
-    """What ROS 2's own test does: each message meets the one with its stamp."""
+    """As in ROS 2's own test, each message meets the one with its stamp."""
     left, right, found = pairs_of(ApproximateTimeSynchronizer, 9, 0.1)
     lefts, rights = [stamped(t) for t in range(9)], [stamped(t) for t in range(9)]
     rng = random.Random(0)  # noqa: S311  # a test
@@ -85,7 +85,7 @@ def test_the_closest_stamps_are_taken() -> None:
 
 
 def test_stamps_beyond_the_slop_wait() -> None:
-    """Until they are pushed out, and counted."""
+    """They wait until they are pushed out, and counted."""
     left, right = SimpleFilter(), SimpleFilter()
     pairs = ApproximateTimeSynchronizer([left, right], 2, 0.1)
     for t in range(5):
@@ -223,7 +223,7 @@ async def test_a_subscriber_begins_a_chain(node: Node) -> None:
 
 
 async def test_messages_are_iterated_over_in_pairs(node: Node) -> None:
-    """What does not fit is passed over."""
+    """Messages without a partner are passed over."""
     left = node.create_subscription(PointStamped, "/left")
     right = node.create_subscription(PointStamped, "/right")
     to_left = node.create_publisher(PointStamped, "/left", 10)

@@ -134,7 +134,7 @@ def test_the_command_of_an_executable_has_all_that_its_process_needs(workspace: 
 def test_installed_executables_come_after_those_of_the_source(
     workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was built and sourced has the compiled ones, and perhaps stale copies of the others."""
+    """An install space has the compiled ones, and perhaps stale copies of the others."""
     prefix = tmp_path / "install"
     marker = "share/ament_index/resource_index/packages"
     write(prefix, {f"{marker}/cpp_robot": "", f"{marker}/far_robot": ""})

@@ -132,7 +132,7 @@ def test_points_without_all_numbers_are_left_out_on_request() -> None:
 
 
 def test_some_fields_in_any_order() -> None:
-    """Still a view."""
+    """The result is still a view."""
     cloud = create_cloud_xyz32(HEADER, XYZ)
 
     assert np.array_equal(read_points_numpy(cloud, ["z", "x"]), XYZ[:, [2, 0]])
@@ -217,7 +217,7 @@ def broken(**values: Any) -> PointCloud2:
     ],
 )
 def test_a_cloud_that_contradicts_itself_names_the_field(cloud: PointCloud2, text: str) -> None:
-    """What other programs send is looked at before it is read."""
+    """Messages of other programs are checked before they are read."""
     with pytest.raises(MessageError, match=text):
         read_points(cloud)
 

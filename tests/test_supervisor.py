@@ -51,7 +51,7 @@ async def say(node_factory: Callable[..., Node]) -> Callable[[str], None]:
 
 @pytest.fixture
 def supervise(context: Context, manual_clock: ManualClock) -> Callable[..., Supervisor[Robot]]:
-    """What makes supervisors whose delays are stepped."""
+    """Creates supervisors whose delays are stepped."""
     return lambda **options: Supervisor(lambda: Robot(context), clock=manual_clock, **options)
 
 
@@ -128,7 +128,7 @@ async def test_a_node_that_ran_for_long_begins_with_the_first_delay(
     say: Callable[[str], None],
     manual_clock: ManualClock,
 ) -> None:
-    """One failure a day is no loop of failures."""
+    """One failure a day is not a loop of failures."""
     async with supervise(min_delay_sec=1.0, max_delay_sec=4.0) as robot:
         for number in (1, 2, 3):
             say("fail")
@@ -300,7 +300,7 @@ async def test_a_node_that_never_ran_has_ended_when_destroyed(context: Context) 
 async def test_a_node_that_is_destroyed_has_ended_when_its_callbacks_have(
     context: Context,
 ) -> None:
-    """What follows may rely on that nothing of it runs any more."""
+    """The code that follows may rely on nothing of it running any more."""
     node = Node("node", context=context)
     cleaned: list[str] = []
 

@@ -82,7 +82,7 @@ async def context(network: dict[str, str]) -> AsyncIterator[Context]:
 
 
 class Wheels:
-    """What the motors receive: the speed of the last command."""
+    """The speed of the last command, which the motors receive."""
 
     def __init__(self, node: Node) -> None:
         self.speed = 0.0

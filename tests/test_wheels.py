@@ -41,7 +41,7 @@ async def wheels(aionode_context: Context, manual_clock: ManualClock) -> AsyncIt
 async def commands(
     node_factory: Callable[..., Node], manual_clock: ManualClock
 ) -> Publisher[Twist]:
-    """Who moves the wheels."""
+    """The publisher of commands for the wheels."""
     return node_factory("driver").create_publisher(Twist, "/cmd_vel", 1)
 
 

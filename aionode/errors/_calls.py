@@ -121,7 +121,7 @@ class GoalRejected(AionodeError, RuntimeError):  # an answer, as GoalResponse.RE
         reason: Why, in words for the caller; the first 1000 characters.
 
     Raises:
-        TypeError: `reason` is no str.
+        TypeError: `reason` is not a str.
     """
 
     def __init__(self, reason: str) -> None:

@@ -213,7 +213,7 @@ class Reader:
             elif word.text == "const":
                 self._constant(scope)
             else:
-                problem = f"{word.text!r} is none of module, struct, typedef and const"
+                problem = f"{word.text!r} is not module, struct, typedef or const"
                 raise LineError(word.at, problem)
             self._expect(";")
         if not scope and self._next.kind != "end":

@@ -836,7 +836,7 @@ class Node(ParameterMethods, GraphQueries):
         """Return the class of a message type that is known by its name; see `find_type`.
 
         Raises:
-            InterfaceNotFoundError: as `find_type`; or the type is no message.
+            InterfaceNotFoundError: as `find_type`; or the type is not a message.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         found: type[Message] = await self.__found(name, Message, endpoints)
@@ -855,7 +855,7 @@ class Node(ParameterMethods, GraphQueries):
             response = await node.create_client(service, "/light").call(request)
 
         Raises:
-            InterfaceNotFoundError: as `find_type`; or the type is no service.
+            InterfaceNotFoundError: as `find_type`; or the type is not a service.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         found: ServiceClass[Message, Message]
@@ -868,7 +868,7 @@ class Node(ParameterMethods, GraphQueries):
         """Return the class of an action type that is known by its name; see `find_type`.
 
         Raises:
-            InterfaceNotFoundError: as `find_type`; or the type is no action.
+            InterfaceNotFoundError: as `find_type`; or the type is not an action.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         found: ActionClass[Message, Message, Message]
@@ -879,7 +879,7 @@ class Node(ParameterMethods, GraphQueries):
         found = await self.find_type(name, endpoints=endpoints)
         if not (isinstance(found, type) and issubclass(found, base)):
             kind = base.__name__.removesuffix("Type").lower()
-            problem = f"it is no {kind}; find_type() takes any type"
+            problem = f"it is not of kind {kind}; find_type() finds a type of any kind"
             raise InterfaceNotFoundError(name, problem=problem)
         return found
 

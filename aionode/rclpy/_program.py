@@ -187,7 +187,7 @@ def code_of(spec: ModuleSpec | None) -> CodeType | None:
 def code_of_call(module: str, function: str) -> CodeType:
     """Return code that exits with the result of a function, like a package's executable."""
     if not all(part.isidentifier() for part in (*module.split("."), *function.split("."))):
-        fail(f"{module}:{function} is no MODULE:FUNCTION")
+        fail(f"{module}:{function} is not MODULE:FUNCTION")
     source = f"import sys\nfrom {module} import {function.partition('.')[0]}\n"
     return compile(f"{source}sys.exit({function}())\n", f"{module}:{function}", "exec")
 

@@ -50,13 +50,13 @@ COMMAND_LIMIT_S = 20.0
 """How long a command may take beside an attack."""
 
 SETTLE_S = 1.0
-"""How long an attacker has been at it before a command starts."""
+"""How long an attack has been running before a command starts."""
 
 CONTROLS = re.compile(
     r"[\x00-\x08\x0b\x0c\x0e-\x1a\x1c-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]"
     r"|\x1b(?!\[[0-9;]*m)|\r(?!\n)"
 )
-"""What aionode prints nowhere: control characters, but for colours, and signs that reorder text."""
+"""Characters that aionode never prints: control characters, except for colours, and bidi signs."""
 
 LOG_LINE = re.compile(r"\[(?:WARN|ERROR|FATAL)\].*|.*Traceback.*|.*panicked.*")
 

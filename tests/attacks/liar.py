@@ -60,7 +60,7 @@ def lying() -> Iterator[Liar]:
 
 
 class Liar:
-    """What an attacker does with its session.
+    """The actions of an attacker with a session.
 
     Args:
         session: The session.

@@ -46,18 +46,18 @@ from tests.support.peers import raw_session
 __all__ = ["FORGED", "PROGRAMS"]
 
 FORGED = "forged"
-"""Who has sent a message that pretends to be of another node."""
+"""Marks messages that pretend to be from another node."""
 
 FAR = 2**62
 
 FILLED_S = 4.0
-"""After so long a publisher has as much for late readers as it keeps."""
+"""The seconds after which a publisher keeps as much for late readers as it can."""
 
 LIES_PER_S = 100
 """How many lies of a fuzzer there are in each second."""
 
 SIGNS = "\x1b\x9b\x07\r\x00\u202e"
-"""What a terminal, or a reader of a log, would take for something else than text."""
+"""Characters that a terminal or a reader of a log would take for something other than text."""
 
 Program = Callable[[float, Sequence[int]], int]
 

@@ -51,7 +51,7 @@ PROGRAM = textwrap.dedent("""
 TIMES = 50
 AT_ONCE = 3
 LAST_S = 1.0
-"""What may be lost."""
+"""The seconds of a recording that may be lost."""
 
 
 async def killed(path: Path, after_s: float) -> int:

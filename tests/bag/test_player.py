@@ -44,7 +44,7 @@ def at(seconds: float) -> Time:
 
 
 class Listener:
-    """What arrives on a topic, each with the time at which it came."""
+    """Records what arrives on a topic, and when."""
 
     def __init__(self, node: Node, clock: ManualClock, topic: str = "/words") -> None:
         self.heard: list[tuple[float, str]] = []

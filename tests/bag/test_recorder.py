@@ -306,7 +306,7 @@ async def test_a_message_of_several_middling_parts_is_compressed_as_a_small_one(
 
 
 async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
-    """That is how rosbag2 records services."""
+    """rosbag2 records services like that."""
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
 
     async with local_context() as context, Node("adder", context=context) as node:

@@ -51,7 +51,7 @@ def quick_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def screen() -> Screen:
-    """Where the command under test prints to."""
+    """The buffer to which the command under test prints."""
     return Screen()
 
 

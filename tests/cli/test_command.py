@@ -219,7 +219,7 @@ def test_a_reader_that_goes_away_ends_a_command_quietly(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """``| head`` is no error."""
+    """``| head`` is not an error."""
     silenced: list[object] = []
     monkeypatch.setattr(command, "discard", silenced.append)
     failing(BrokenPipeError())

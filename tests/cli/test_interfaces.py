@@ -75,7 +75,7 @@ def test_show_says_what_fields_mean(screen: Any) -> None:
 def test_show_prints_the_comments_of_the_installed_file(
     screen: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """That file is what ROS's other tools show."""
+    """ROS's other tools show that file."""
     folder = tmp_path / "share" / "geometry_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Vector3.msg").write_text("float64 x  # first\nfloat64 y\nfloat64 z\n")
@@ -99,7 +99,7 @@ def test_proto_prints_what_can_be_filled_in(screen: Any) -> None:
 
 
 def test_proto_of_a_service_is_its_request(screen: Any) -> None:
-    """That is what one types for ``service call``."""
+    """Users type it for ``service call``."""
     proto(get_interface("example_interfaces/srv/AddTwoInts"), quotes=False, output=screen.output)
 
     assert screen.text == "a: 0\nb: 0\n\n"

@@ -56,7 +56,7 @@ async def test_json_call_prints_the_response_only(tool: Node, server: Node, scre
 async def test_call_repeats_at_a_rate(
     running: Any, tool: Node, server: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """Until Ctrl-C."""
+    """It does so until Ctrl-C."""
     async with running(call(tool, "/add_two_ints", ADD, rate=10.0, output=screen.output)):
         await manual_clock.advance(0.35)
 

@@ -303,7 +303,7 @@ def test_a_reader_that_goes_away_is_no_error(terminals: Terminals) -> None:
 def test_bad_input_is_one_line_on_stderr(
     arguments: list[str], says: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """What was given, where, and what is expected; status 1; no traceback."""
+    """It says what was given, where, and what is expected; status 1; no traceback."""
     status = main(arguments)
 
     stdout, stderr = capfd.readouterr()

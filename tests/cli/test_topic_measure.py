@@ -269,7 +269,7 @@ async def test_bw_of_several_topics_is_a_record_for_each(
 async def test_all_topics_are_those_of_now(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any, verb: Any
 ) -> None:
-    """Like --all of ros2 in Lyrical, which prints their number."""
+    """This is like --all of ros2 in Lyrical, which prints their number."""
     talker.create_publisher(String, "/other", 10)
 
     async with running(verb(tool, [], every=True, output=screen.output)):

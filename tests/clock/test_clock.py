@@ -358,7 +358,7 @@ class Watch:
         (0.5, -1.0, False, 0.25, False),
         (0, -0.75, True, 0.25, True),
         (0, -0.1, True, 1.75, False),
-        (0.1, -0.1, True, 1.0, False),  # setting the same time is no jump
+        (0.1, -0.1, True, 1.0, False),  # setting the same time is not a jump
         (0, 0, True, 1.75, False),
     ],
 )
@@ -395,7 +395,7 @@ def test_switching_the_source_calls_callbacks_that_asked_for_it(
 
 
 def test_setting_a_clock_that_is_not_driven_is_no_jump() -> None:
-    """That time is not visible yet."""
+    """The time that was set is not visible yet."""
     clock = ROSClock()
     watch = Watch(clock, 0.1, -0.1, change=True)
     clock.set_ros_time_override(ros(50))

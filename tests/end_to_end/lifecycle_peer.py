@@ -64,7 +64,7 @@ TRANSITIONS = [
 """Number, label, start and goal; in this order."""
 
 REQUESTS = [one for one in TRANSITIONS if one[0] < 10]
-"""Those that can be requested; the others are results of callbacks."""
+"""The transitions that can be requested; the others are results of callbacks."""
 
 LABELS = [
     *dict.fromkeys(one[1] for one in TRANSITIONS),
@@ -326,13 +326,13 @@ RESULTS = {
     "FAILURE": "FAILURE",
     "ERROR": "ERROR",
     "RAISE": "ERROR",  # an exception
-    "NONE": "ERROR",  # something that is no result
+    "NONE": "ERROR",  # something that is not a result
     "LOSE": "ERROR",  # what it awaits is canceled
 }
-"""What a callback may do, and the result that it counts as."""
+"""The ways in which a callback may end, and the result that each counts as."""
 
 HANDLINGS = {"ERROR": list(RESULTS), "RAISE": ["SUCCESS", "FAILURE", "ERROR", "RAISE"]}
-"""What `on_error` does after that; after all else it succeeds."""
+"""The way in which `on_error` ends after that; after all others it succeeds."""
 
 
 def make_transitions(stage: Stage) -> None:

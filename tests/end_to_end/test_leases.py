@@ -15,7 +15,7 @@ pytestmark = pytest.mark.one_loop
 PROGRAM = "tests/end_to_end/lease_member.py"
 TTL_SEC = 0.3
 LATE_SEC = 1.2
-"""What it may take longer on a busy machine; the block of the loop lasts longer than both."""
+"""The additional time on a busy machine; the loop is blocked for longer than both."""
 
 LONG = "60"
 
@@ -62,7 +62,7 @@ def test_the_stop_of_a_blocked_loop_arrives(
 def test_the_last_command_is_the_stop_of_a_blocked_loop(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
-    """Where each command brings its own: it arrives once more, while the loop is blocked."""
+    """Each command brings its own stop, which arrives once more while the loop is blocked."""
     monkeypatch.setenv("AIONODE_LINK", link)
     with (
         Process(PROGRAM, "wheels") as wheels,

@@ -72,7 +72,7 @@ OFFERED = {
     "TimerInfo": {"actual_call_time", "expected_call_time"},
     "CallbackContext": {"entity", "node", "subject"},
 }
-"""What objects of a node have, the attributes of instances included."""
+"""The names on a node's objects, including attributes of instances."""
 
 CLASSES = [
     name

@@ -73,7 +73,7 @@ async def test_a_future_raises_what_call_raises(node: Node) -> None:
 
 
 async def test_cancelling_the_future_forgets_the_call(node: Node) -> None:
-    """Like abandoning `await client.call()`."""
+    """Abandoning `await client.call()` does the same."""
     client = node.create_client(AddTwoInts, "add")
     future = client.call_async(Request())
     await settle()
@@ -149,7 +149,7 @@ def test_a_future_without_a_loop_says_where_one_is() -> None:
 
 @pytest.fixture
 def worker() -> Worker:
-    """What executes goals."""
+    """A worker that executes goals."""
     return Worker()
 
 

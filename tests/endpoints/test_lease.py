@@ -648,7 +648,7 @@ async def test_the_stop_is_that_of_the_beginning(robot: Robot) -> None:
 
 
 async def test_the_stop_may_be_given_as_bytes(robot: Robot) -> None:
-    """Like published messages."""
+    """Published messages may be, too."""
     async with robot.speed.lease(stop=cdr.encode(Int8(data=4))) as lease:
         lease.publish(cdr.encode(Int8(data=5)))
     assert await robot.took() == [5, 4]
@@ -682,7 +682,7 @@ async def test_a_stop_that_does_not_fit_is_refused_at_the_beginning(
 async def test_arguments_that_do_not_fit_are_refused(
     robot: Robot, options: Any, error: type[Exception]
 ) -> None:
-    """Where they are given."""
+    """The error comes where they are given."""
     with pytest.raises(error, match="lease of /speed"):
         robot.speed.lease(stop=STOP, **options)
 

@@ -108,7 +108,7 @@ async def test_answers_out_of_order_reach_the_right_callers(node: Node) -> None:
 
 
 async def test_a_callback_may_call_a_service_of_its_own_node(node: Node) -> None:
-    """Where rclpy deadlocks."""
+    """In rclpy it deadlocks."""
     heard: list[int] = []
     node.create_service(AddTwoInts, "add", add)
     client = node.create_client(AddTwoInts, "add")
@@ -404,7 +404,7 @@ async def test_a_request_that_was_given_up_before_its_turn_is_not_served(node: N
 
 
 async def test_a_late_reply_does_nothing(manual_clock: Any) -> None:
-    """Neither after a timeout, nor after a cancellation at the very moment of its arrival."""
+    """It comes after a timeout, or after a cancellation at the very moment of its arrival."""
     transport = FaultyTransport(LocalTransport(), delay=1.0, clock=manual_clock)
     context = Context(transport=transport)
     async with Node("node", context=context) as node:
@@ -564,7 +564,7 @@ async def test_a_destroyed_client_says_so(node: Node) -> None:
 
 
 async def test_a_client_counts_calls_and_errors(node: Node) -> None:
-    """What a dashboard shows."""
+    """A dashboard shows these."""
     node.create_service(AddTwoInts, "add", add)
     client = node.create_client(AddTwoInts, "add")
     await client.call(Request())

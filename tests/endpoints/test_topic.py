@@ -70,7 +70,7 @@ async def test_a_callback_gets_each_message_in_order(node: Node) -> None:
 
 
 async def test_a_subscription_without_callback_is_an_async_iterator(node: Node) -> None:
-    """What every asyncio library offers, and rclpy does not."""
+    """Every asyncio library offers this, but rclpy does not."""
     reader = node.create_subscription(String, "words")
     fill(node.create_publisher(String, "words", 10), "a", "b")
     reader.destroy()
@@ -200,7 +200,7 @@ async def test_what_a_raw_subscription_received_can_be_published(node: Node) -> 
 
 @pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])
 async def test_bytes_that_are_no_message_are_refused(node: Node, kind: type[bytes]) -> None:
-    """Where the mistake is made, with the field and the offset."""
+    """The error comes where the mistake is made, with the field and the offset."""
     publisher = node.create_publisher(String, "words", 10)
     with pytest.raises(DecodeError, match="std_msgs/msg/String"):
         publisher.publish(kind(b"\0\1\0\0\xff"))

@@ -28,7 +28,7 @@ STRANGE = (
     b"\0\0\0\x80", b"\0\0\0\x40", b"\1" + bytes(7), b"9" * 30, b"-1", b"1e999", b"\xed\xa0\x80",
     b"\n", b"'", b'"', b"\\", b"[" * 300, b"{" * 300, b"(" * 300,
 )  # fmt: skip
-"""What numbers, lengths and brackets are replaced by."""
+"""Replacements for numbers, lengths and brackets."""
 
 
 class Result(NamedTuple):

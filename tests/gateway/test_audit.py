@@ -72,7 +72,7 @@ for _ in range(900):
     ids=lambda arguments: type(arguments).__name__,
 )
 def test_what_is_written_of_arguments_does_not_grow_with_them(arguments: Any) -> None:
-    """Neither does the time: a message may contain a million numbers."""
+    """The time does not either: a message may contain a million numbers."""
     assert 1 < len(shortened(arguments)) <= MOST_TEXT
 
 

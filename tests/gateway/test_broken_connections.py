@@ -378,7 +378,7 @@ async def test_an_answer_that_nobody_reads_is_given_up() -> None:
 
 
 async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
-    """A slow reader is no attack: the answer continues as long as some of it is read."""
+    """A slow reader is not an attack: the answer continues as long as some of it is read."""
     limits = "handshake_sec = 0.2"
     size = 400_000
     async with serving(Policy.parse(POLICY + limits)) as gateway:

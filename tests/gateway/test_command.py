@@ -275,7 +275,7 @@ async def test_a_command_that_waits_while_the_ping_is_answered_is_refused(
 
 
 async def test_the_gateway_repeats_nothing(bench: Bench, wheels: list[tuple[float, float]]) -> None:
-    """Neither while a client is silent nor when it takes the topic again."""
+    """It repeats none while a client is silent, nor when it takes the topic again."""
     async with bench.session("high") as session:
         for _ in range(3):
             await drive(session, 1.0)

@@ -134,9 +134,9 @@ silent is followed by the stop."""
 NO_CELLS: Final[dict[tuple[str, str], str]] = {
     ("http", "advertise"): "a request has an answer, and gets no requests",
     ("events", "publish"): "events go to the client",
-    ("events", "call"): "a service has one response, which is no stream",
-    ("events", "parameter"): "a parameter has one value, which is no stream",
-    ("events", "see"): "lists are no streams",
+    ("events", "call"): "a service has one response, which is not a stream",
+    ("events", "parameter"): "a parameter has one value, which is not a stream",
+    ("events", "see"): "lists are not streams",
     ("events", "advertise"): "events go to the client",
     ("foxglove", "goal"): "the protocol has no actions, and their services are not announced",
     ("foxglove", "advertise"): "in the protocol clients offer no services",
@@ -511,7 +511,7 @@ async def test_every_rule_lets_pass_and_refuses(
 
 @pytest.mark.parametrize("way", [way for way in WAYS if way != "events"])
 async def test_no_list_has_what_is_hidden(context: Context, way: str) -> None:
-    """Neither its name, nor its type, nor among the endpoints of a node."""
+    """Lists contain neither its name nor its type, nor do the endpoints of a node."""
     async with table_of(context, way) as table:
         shown = await table.names("seer")
 

@@ -471,7 +471,7 @@ async def test_a_client_that_may_only_read_is_told_so(
 async def test_what_the_policy_hides_is_in_no_list(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """Neither as a channel, nor in the graph, nor as a change of a parameter."""
+    """It appears neither as a channel, nor in the graph, nor as a change of a parameter."""
     policy = Policy.parse("""
         [[who]]
         name = "local"

@@ -119,7 +119,7 @@ async def test_a_refusal_has_precedence(aionode_context: Context, verb: str) -> 
 
 
 async def test_what_is_hidden_is_not_there(aionode_context: Context) -> None:
-    """Neither in the lists, nor by name, nor in the document."""
+    """It is neither in the lists, nor found by name, nor in the document."""
     policy = f'{EVERYTHING}[[refuse]]\nsee = ["/status", "/robot"]\n'
     async with robot_and_client(aionode_context, policy) as (_, client):
         topics = (await client.get("/topics")).json()
@@ -269,7 +269,7 @@ async def test_two_programs_with_one_identity_do_not_drive_at_once(
 
 
 async def test_a_named_client_is_one_over_all_its_connections(aionode_context: Context) -> None:
-    """Like `curl` in a loop; another name, or none, is another client."""
+    """`curl` in a loop is such a client; another name, or none, is another client."""
     async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         url = client.base_url
         codes = [(await post(url, name)).status_code for name in ("pad", "pad", "arm", "", "pad")]

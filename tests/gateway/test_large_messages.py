@@ -137,7 +137,7 @@ async def test_what_waits_to_be_encoded_is_bounded(robot: Robot, depth: int, siz
 
 
 async def test_a_message_that_cannot_be_encoded_ends_nothing(robot: Robot) -> None:
-    """Neither the gateway, whose task encodes it, nor the messages after it."""
+    """The gateway, whose task encodes it, goes on, and so do the messages after it."""
     slow = Slow(robot)
     slow.go_on.set()
     slow.failures.append(RuntimeError("no memory"))

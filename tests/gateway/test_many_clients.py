@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.stress, pytest.mark.timeout(120)]
 
 
 async def test_49_clients_get_every_message_beside_one_that_reads_nothing() -> None:
-    """Like a local reader: a slow client slows nobody down. `make gateway-load` measures more."""
+    """A local reader gets them, too: a slow client slows nobody down. See `make gateway-load`."""
     _, heard = await run_with_clients(text, 100.0, 3.0, "none", 49, deaf=1)
 
     assert heard.local == 0

@@ -97,7 +97,7 @@ async def test_list_and_describe_show_the_users_names(assisted: Bench, era: str)
 
 
 async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None:
-    """Those that arrive while it waits."""
+    """They are those that arrive while it waits."""
     client = await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         reading = tasks.create_task(answered(client, "read", topic="/text", count=2))

@@ -195,7 +195,7 @@ async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
 
         caption = await page.text("#scene .caption")
         assert "/lost: no transform from <b>elsewhere</b> to map" in caption
-        assert "/wrong: 7 \u00d7 2 cells of 0.5 m with 6 values are no map" in caption
+        assert "/wrong: 7 \u00d7 2 cells of 0.5 m with 6 values are not a map" in caption
 
 
 async def test_what_nobody_looks_at_is_not_subscribed_to(node: Node) -> None:
@@ -220,7 +220,7 @@ async def drag(page: Page) -> None:
 
 
 async def test_a_click_sends_a_goal_pose(node: Node) -> None:
-    """Where the pointer was pressed, facing where it was released; one click is one goal."""
+    """It is where the pointer was pressed, facing where it was released; one click is one goal."""
     got: list[PoseStamped] = []
     node.create_subscription(PoseStamped, "/goal_pose", got.append, 10)
     place(node, "base_link", "map", 1.0, 0.0)

@@ -370,7 +370,7 @@ def test_without_a_policy_file_this_host_may_read_and_nobody_may_write() -> None
 
 
 def test_a_token_is_never_printed() -> None:
-    """Neither by an error nor by a debugger's list of variables."""
+    """Errors do not print it, and neither does a debugger's list of variables."""
     assert "secret" not in repr(credentials(token=SECRET))
 
 

@@ -274,7 +274,7 @@ async def test_the_time_is_that_of_the_node(client: RosbridgeClient, robot: Robo
 
 
 async def test_what_the_policy_hides_is_not_in_the_answers(robot: Robot, tmp_path: Any) -> None:
-    """Neither in lists, nor when requested by name."""
+    """It is neither in lists, nor returned when requested by name."""
     file = tmp_path / "policy.toml"
     file.write_text('[[allow]]\nsee = "/words"\n')
     robot.policy = Policy.load(file)

@@ -86,7 +86,7 @@ async def test_random_ops_harm_nobody(robot: Robot, client: RosbridgeClient, see
 
 @pytest.mark.parametrize("field", ["msg", "topic", "type", "qos", "queue_size"])
 async def test_no_depth_of_nesting_harms(client: RosbridgeClient, field: str) -> None:
-    """Neither what the decoder refuses, nor what it just accepts: errors show these values."""
+    """The decoder refuses some values and just accepts others: errors show both."""
     for depth in range(400, 1100, 20):
         nested = "[" * depth + "]" * depth
         op = '{"op": "publish", "topic": "/t", "type": "std_msgs/String", "%s": %s}'

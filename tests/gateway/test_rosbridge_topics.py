@@ -365,7 +365,7 @@ async def test_a_burst_of_messages_is_published_whole_and_in_order(
 async def test_a_page_may_subscribe_to_very_many_topics_at_once(
     client: RosbridgeClient, node: Node
 ) -> None:
-    """When it is loaded, all its ops arrive in one burst, which is no attack."""
+    """When it is loaded, all its ops arrive in one burst, which is not an attack."""
     for number in range(60):
         for op in ("advertise", "subscribe"):
             client.send(op, topic=f"/t{number}", type="std_msgs/String")

@@ -122,7 +122,7 @@ def test_a_msg_file_is_taken_before_the_idl_file_that_was_made_of_it(tmp_path: P
     [
         ("struct A { sequence<sequence<long>> x; };", "no sequences of sequences"),
         ("typedef long m[3]; struct A { m x[2]; };", "no arrays of arrays"),
-        ("enum E { X }; struct A { E x; };", "'enum' is none of module"),
+        ("enum E { X }; struct A { E x; };", "'enum' is not module"),
         ("struct A { long x; long x; };", "'x' is already defined"),
         ("struct A { long x };", "'}' where ';' was expected"),
         ("struct A { long x;", "the end where"),

@@ -102,7 +102,7 @@ def test_constants_are_told_from_fields(text: str, value: object) -> None:
 
 
 def test_comments_and_empty_lines_define_nothing() -> None:
-    """Those at the top become the docstring, and those at a member say what it is."""
+    """Comments at the top become the docstring, and those at a member say what it is."""
     text = "# What it is.\n#\n# More.\n\n# still\nint32 x  # about x\n# about y\n\n  int32 y\t\r\n"
     found = parse("tutorial/msg/Words", text).parts[0]
 

@@ -195,7 +195,7 @@ def test_the_test_interfaces_have_the_hashes_of_their_definitions(
 
 
 def test_a_type_is_written_as_in_a_definition() -> None:
-    """What the comparison above stands on."""
+    """The comparison above relies on this."""
     header = get_message("std_msgs/msg/Header")
 
     assert type_name(header) == "std_msgs/msg/Header"

@@ -242,7 +242,7 @@ def test_without_the_option_a_plugin_that_is_missing_is_an_error_that_says_what_
 
 
 def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) -> None:
-    """Like a container of Python classes."""
+    """A container of Python classes needs none either."""
     text = CONTAINER.replace(
         'ComposableNode(package="image_proc", plugin="image_proc::RectifyNode", name="eye"),', ""
     )

@@ -93,7 +93,7 @@ def test_the_same_file_in_xml_and_yaml_starts_the_same(files: Files) -> None:
 
 
 def test_loops_have_their_values_in_substitutions(files: Files) -> None:
-    """Those of an outer loop exist in an inner one, and none do after it."""
+    """The values of an outer loop exist in an inner one, and none do after it."""
     records = files.plan(
         "a.launch.xml",
         """<launch>
@@ -128,7 +128,7 @@ BAD_XML = {
 
 @pytest.mark.parametrize("text", BAD_XML)
 def test_a_bad_file_in_xml_is_one_error_with_its_line(files: Files, text: str) -> None:
-    """Even a mistake that could be ignored: a misspelt attribute is no default."""
+    """Even a mistake that could be ignored: a misspelt attribute is not a default."""
     line, problem = BAD_XML[text]
     with pytest.raises(LaunchFileError) as caught:
         files.plan("a.launch.xml", text)

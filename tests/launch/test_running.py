@@ -431,7 +431,7 @@ async def test_a_coroutine_runs_beside_the_processes(robot: Robot) -> None:
 
 
 async def test_a_coroutine_that_fails_is_one_error_with_its_line(robot: Robot) -> None:
-    """Like that of a function."""
+    """A function that fails is one, too."""
     with pytest.raises(LaunchFileError, match=r"a\.launch\.py:\d+: OpaqueCoroutine: broken"):
         await robot.run(
             "OpaqueCoroutine(coroutine=work, ignore_context=True),",
@@ -489,7 +489,7 @@ async def test_a_process_may_print_to_a_terminal(robot: Robot) -> None:
 
 
 async def test_nothing_begins_at_a_shutdown(robot: Robot) -> None:
-    """Neither a timer nor a coroutine: everything is ending, so they would never be done."""
+    """Everything is ending, so a timer or a coroutine would never be done."""
     lines = await robot.run(
         """
         RegisterEventHandler(OnShutdown(on_shutdown=[

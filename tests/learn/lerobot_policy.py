@@ -21,7 +21,7 @@ TARGET = 0.5
 @PreTrainedConfig.register_subclass("mock")
 @dataclass
 class MockConfig(PreTrainedConfig):  # type: ignore[misc]  # LeRobot is not there
-    """What it sees and commands."""
+    """The features that the policy sees and commands."""
 
     observation_delta_indices = None
     action_delta_indices = None

@@ -28,7 +28,7 @@ NAMES = {
     ),
     "lerobot.utils.errors": ("DeviceAlreadyConnectedError", "DeviceNotConnectedError"),
 }
-"""What a plugin imports, or is made by."""
+"""The modules that a plugin imports, or that create it."""
 
 SPECIAL = ("__del__", "__enter__", "__exit__", "__init__", "__str__")
 

@@ -262,7 +262,7 @@ async def test_a_policy_that_fails_stops_the_robot_at_once(robot: Robot) -> None
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 async def test_a_value_that_is_not_a_number_stops_the_robot(robot: Robot, bad: float) -> None:
-    """NaN is no command, and no limit catches it."""
+    """NaN is not a command, and no limit catches it."""
     _, ended = await driven(robot, lambda _: [[1.0], [bad]], 1.0)
 
     assert isinstance(ended, ValueError)
@@ -417,7 +417,7 @@ def half(seen: dict[str, np.ndarray]) -> np.ndarray:
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_a_function_may_run_in_another_process(robot: Robot) -> None:
-    """Where it may hold the GIL."""
+    """It may hold the GIL there."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as executor:
         await driven(robot, half, 0.5, executor=executor)
     assert {value for _, value in robot.got[:-1]} == {1.5}

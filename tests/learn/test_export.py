@@ -473,7 +473,7 @@ def test_a_bag_of_another_contract_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_export_is_checked(tmp_path: Path) -> None:
-    """What became of the messages, as numbers and in plain words."""
+    """The report says what became of the messages, as numbers and in plain words."""
     bags = [demonstration(tmp_path / "run", length_sec=1)]
     exported = export(tmp_path / "out", bags, contract=contract(), task="turn it", jobs=1)
     assert exported.problems == {}, exported.text

@@ -169,7 +169,7 @@ CASES = {
         SOME,
         "position.joint: not there: joint occurs 2 times among the names",
     ),
-    "a joint that is no number": Case(
+    "a joint that is not a number": Case(
         "/joint_states",
         joints(name=["joint"], position=[float("nan")], velocity=[0.0]),
         SOME,
@@ -201,7 +201,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_false_messages_are_left_out_and_told(tmp_path: Path, name: str) -> None:
-    """What is left is true, and the exit status is not 0."""
+    """The rest is true, and the exit status is not 0."""
     case = CASES[name]
     found = exported(tmp_path, false(case.topic, case.change, case.every))
     assert case.told in found.text

@@ -348,7 +348,7 @@ def test_a_feature_that_lerobot_would_rename_is_refused(
 
 
 def test_stubs_that_differ_from_lerobot_are_told(plugin: Any) -> None:
-    """What `make lerobot` compares with the real one, these tests rely on."""
+    """These tests rely on what `make lerobot` compares with the real one."""
     stubs = described()
     assert differences(stubs, stubs) == []
     real = copy.deepcopy(stubs)

@@ -150,7 +150,7 @@ async def test_infinite_numbers_are_observed_if_the_contract_says_what_they_mean
 
 
 async def test_the_newest_reference_counts_and_none_twice(robot: Robot) -> None:
-    """What came while a policy computed is left out."""
+    """References that came while a policy computed are left out."""
     async with CONTRACT.observe(robot.node) as observations:
         await robot.move("arm", 960, 1.0)
         await robot.move("gripper", 960, 1.0)

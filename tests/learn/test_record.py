@@ -115,7 +115,7 @@ async def test_a_discarded_episode_is_gone(tmp_path: Path) -> None:
 async def test_an_error_in_the_block_is_a_failure_which_an_export_leaves_out(
     tmp_path: Path,
 ) -> None:
-    """What was demonstrated is not what was wanted."""
+    """The demonstration is not what was wanted."""
     async with recording(tmp_path / "runs") as (robot, episodes):
         async with episodes.record():
             await robot.step(30)
@@ -245,7 +245,7 @@ async def test_a_full_disk_is_reported_while_the_episode_is_recorded(
 async def test_an_episode_on_a_full_disk_can_be_discarded(
     tmp_path: Path, full_disk: Callable[[], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """That makes room for the next one."""
+    """Discarding it makes room for the next one."""
     async with recording(tmp_path) as (robot, episodes):
         await episodes.start()
         full_disk()

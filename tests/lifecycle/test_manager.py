@@ -162,7 +162,7 @@ async def supervisor(
 
 @pytest.fixture
 def log() -> list[str]:
-    """What the nodes note."""
+    """The notes of the nodes."""
     return []
 
 
@@ -252,7 +252,7 @@ async def test_a_node_that_cannot_be_restored_is_told_and_tried_again_when_it_is
 async def test_a_node_that_replaces_another_before_that_is_gone_is_noticed(
     node: Node, node_factory: Callable[..., Any]
 ) -> None:
-    """What stands for a killed process stays in the graph until its lease is over."""
+    """The tokens of a killed process stay in the graph until its lease is over."""
     camera = node_factory(Step, "camera", [])
     await settle()
     async with LifecycleManager(node, ["/camera"], restore=True):

@@ -116,7 +116,7 @@ async def test_a_node_goes_through_its_life(managed: Managed) -> None:
 
 
 async def test_a_failure_returns_to_the_start(managed: Managed) -> None:
-    """FAILURE is no error: the node may be asked again."""
+    """FAILURE is not an error: the node may be asked again."""
     managed.outcomes["configure"] = FAILURE
 
     assert await managed.trigger_configure() is FAILURE
@@ -253,7 +253,7 @@ async def test_get_state_answers_during_a_transition(node: Node, managed: Manage
 
 
 async def test_an_unknown_request_is_refused_without_an_event(node: Node, managed: Managed) -> None:
-    """Activating is not available yet, and 99 is no number of a transition."""
+    """Activating is not available yet, and 99 is not a number of a transition."""
     events = node.create_subscription(TransitionEvent, "/managed/transition_event")
 
     assert not await change(node, "activate")
@@ -264,7 +264,7 @@ async def test_an_unknown_request_is_refused_without_an_event(node: Node, manage
 
 
 async def test_each_transition_publishes_two_events(node: Node, managed: Managed) -> None:
-    """Into the transition state and out of it, with labels and numbers."""
+    """One leads into the transition state and one out of it, with labels and numbers."""
     events: list[tuple[str, str]] = []
     node.create_subscription(
         TransitionEvent,
@@ -452,7 +452,7 @@ async def test_progress_is_told_while_a_transition_runs(managed: Managed) -> Non
 
 
 async def test_a_publisher_sends_only_while_active(node: Node, managed: Managed) -> None:
-    """What is published before goes nowhere, and is counted."""
+    """Messages published before are dropped and counted."""
     publisher = managed.create_lifecycle_publisher(String, "/chatter", 10)
     heard: list[str] = []
     node.create_subscription(String, "/chatter", lambda msg: heard.append(msg.data))

@@ -55,7 +55,7 @@ async def test_messages_of_ros_are_heard_in_order(node: Node) -> None:
 
 
 async def test_ros_hears_messages(node: Node) -> None:
-    """What it hears it publishes again."""
+    """It publishes again what it hears."""
     echoed = node.create_subscription(String, "heard_by_ros", None, 10)
     publisher = node.create_publisher(String, "to_ros", 10)
     async with asyncio.timeout(20):

@@ -34,7 +34,7 @@ VARIABLES = (
 
 
 SINKS: list[Callable[[], None]] = []
-"""What removes the sinks that a test has added."""
+"""Removes the sinks that a test has added."""
 
 
 @pytest.fixture(autouse=True)

@@ -223,7 +223,7 @@ async def test_the_log_topic_can_be_left_out(context: Context) -> None:
 async def test_levels_of_loggers_can_be_set_by_others(
     context: Context, node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """These are the two services that rclpy offers on request."""
+    """Nodes of rclpy offer these two services on request."""
     async with Node("loud", context=context, enable_logger_service=True) as loud:
         get = node.create_client(GetLoggerLevels, "/loud/get_logger_levels")
         put = node.create_client(SetLoggerLevels, "/loud/set_logger_levels")

@@ -249,5 +249,7 @@ async def test_a_type_is_found_by_its_kind_and_another_kind_is_refused(
     assert await node.find_message("std_msgs/msg/String") is String
     assert await node.find_service("example_interfaces/srv/AddTwoInts") is AddTwoInts
     assert await node.find_action("example_interfaces/action/Fibonacci") is Fibonacci
-    with pytest.raises(InterfaceNotFoundError, match=r"std_msgs/msg/String: it is no service; "):
+    with pytest.raises(
+        InterfaceNotFoundError, match=r"std_msgs/msg/String: it is not of kind service; "
+    ):
         await node.find_service("std_msgs/msg/String")

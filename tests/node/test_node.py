@@ -253,7 +253,7 @@ async def test_an_error_of_a_service_can_be_caught_around_the_node(context: Cont
 
 
 async def test_exceptions_of_body_and_callback_come_in_one_group(context: Context) -> None:
-    """Neither may hide the other."""
+    """None of them may hide the other."""
     node = Node("node", context=context)
     node.create_subscription(String, "words", failing)
     node.create_publisher(String, "words", 10).publish(String(data="x"))

@@ -70,7 +70,7 @@ def test_a_picture_has_what_the_user_has_written(robot: Node) -> None:
 
 
 def test_what_does_not_match_has_its_reason(robot: Node) -> None:
-    """Where it is drawn: on the way to the one who does not hear."""
+    """It is drawn on the way to the node that does not receive."""
     (bad,) = [edge for edge in picture_of(robot.graph).edges if edge.mismatch]
 
     assert (bad.source, bad.target) == (("topic", "/numbers"), ("node", "/robot"))
@@ -86,7 +86,7 @@ def test_names_choose_a_part(robot: Node) -> None:
 
 
 def test_two_moments_are_compared(robot: Node) -> None:
-    """What is new and what is gone is marked, and drawn in its colour."""
+    """New and missing parts are marked, and drawn in their colour."""
     before = picture_of(robot.graph, names=["/words"])
     after = picture_of(robot.graph, names=["/reset"])
 

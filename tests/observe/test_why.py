@@ -119,7 +119,7 @@ def add(request: Any) -> Any:
 
 
 class Tools:
-    """What a callback of a test uses: a client of ``add``, and a function that publishes."""
+    """A client of ``add`` and a publisher, for the callback of a test."""
 
     def __init__(self, client: Any, publish: Callable[[], None]) -> None:
         self.client = client
@@ -127,7 +127,7 @@ class Tools:
 
 
 FROM_IN = ["on_in", "message /in"]
-"""What led to a message of the callback: this message, which was not sent in a callback."""
+"""The causes of a message of the callback: one message, which was not sent in a callback."""
 
 BY_ANSWER = ["awaited by /robot", "response /add", "add", "request /add"]
 

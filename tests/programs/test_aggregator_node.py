@@ -197,7 +197,7 @@ def test_a_name_without_its_prefix_keeps_its_path(name: str, prefix: str) -> Non
 
 
 async def test_parts_may_be_discarded_or_ignored(panel: Callable[..., Panel]) -> None:
-    """What is discarded is not even other; what is ignored is."""
+    """Discarded parts are not even listed under Other; ignored ones are."""
     parts = panel(
         **{
             "a.type": "diagnostic_aggregator/DiscardAnalyzer",

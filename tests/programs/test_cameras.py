@@ -50,7 +50,7 @@ def videos(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Viewer:
-    """Who looks at a camera."""
+    """A node that receives the images of a camera."""
 
     def __init__(self, node: Any) -> None:
         self.node = node

@@ -270,7 +270,7 @@ async def test_the_orientation_is_broadcast_in_either_direction(
 async def test_debug_topics_have_the_angles_and_whether_it_stands_still(
     wires: Callable[..., Any],
 ) -> None:
-    """Where they are asked for."""
+    """They are published if parameters ask for them."""
     robot = await wires(publish_debug_topics=True)
     await robot.measure()
     await robot.measure(tilted(0.4, 0.0))
@@ -281,7 +281,7 @@ async def test_debug_topics_have_the_angles_and_whether_it_stands_still(
 
 
 async def test_with_a_magnetometer_both_messages_count(wires: Callable[..., Any]) -> None:
-    """Those with about the same stamp."""
+    """Messages with about the same stamp are combined."""
     robot = await wires(use_mag=True)
     for _ in range(2):
         await robot.measure()

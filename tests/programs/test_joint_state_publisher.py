@@ -108,7 +108,7 @@ async def test_what_sources_say_is_taken_over(
 async def test_delta_moves_joints_to_and_fro(
     joints: Callable[..., Any], manual_clock: ManualClock
 ) -> None:
-    """Those that turn without end go around."""
+    """Joints that turn without end go around."""
     heard = await joints(delta=2.0)
     await manual_clock.advance(0.2)
 

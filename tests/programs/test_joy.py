@@ -30,7 +30,7 @@ SOUTH, EAST, SELECT, EXTRA = 0x130, 0x131, 0x13A, 0x100
 
 
 class Limits(NamedTuple):
-    """What evdev says of an axis."""
+    """The limits of an axis, as evdev reports them."""
 
     value: int
     min: int
@@ -38,7 +38,7 @@ class Limits(NamedTuple):
 
 
 class Event(NamedTuple):
-    """What evdev says has happened."""
+    """An event, as evdev reports it."""
 
     type: int
     code: int
@@ -65,7 +65,7 @@ RECORDED = [
     Event(0, 0, 0), Event(KEY, SOUTH, 1), Event(0, 0, 0), Event(ABS, HAT_Y, -1), Event(0, 0, 0),
     Event(KEY, SOUTH, 0), Event(0, 0, 0), Event(ABS, HAT_Y, 0), Event(0, 0, 0),
 ]  # fmt: skip
-"""What a thumb and a finger did, as evdev read it."""
+"""The events of a thumb and a finger, as evdev read them."""
 
 
 class Pad:
@@ -222,7 +222,7 @@ async def test_a_joystick_that_is_pulled_out_falls_silent_until_it_is_back(desk:
 
 
 async def test_a_joystick_is_chosen_by_its_name_or_its_number(desk: Desk) -> None:
-    """What is no joystick does not count, and others are closed."""
+    """Other devices do not count, and are closed."""
     keyboard = Pad("Keyboard", PAD | {KEY: [30, 31], ABS: []})
     desk.plugged = [keyboard, Pad("One"), Pad("Two")]
     await desk.begin(device_id=1)
@@ -310,7 +310,7 @@ def rumble(intensity: float, **others: int) -> JoyFeedback:
 
 @pytest.mark.usefixtures("motors")
 async def test_feedback_rumbles_for_a_second(desk: Desk, node_factory: Callable[..., Any]) -> None:
-    """As strongly as it says; what is no rumble, or out of range, is ignored as in the original."""
+    """As strongly as it says; other effects, or values out of range, are ignored as in joy."""
     pad = desk.plugged[0] = Pad(capabilities=PAD | {FF: [RUMBLE]})
     await desk.begin()
     publisher = node_factory("game").create_publisher(JoyFeedback, "joy/set_feedback", 10)
@@ -369,7 +369,7 @@ def test_without_evdev_the_program_says_what_to_install(monkeypatch: pytest.Monk
 
 
 class Base:
-    """What a base hears, and the thumb."""
+    """The commands that a base receives, and the thumb."""
 
     def __init__(self, node: Any, clock: ManualClock, kind: Any = Twist) -> None:
         self.clock = clock
@@ -478,7 +478,7 @@ async def test_the_end_of_the_program_stops_the_robot(
 
 
 async def test_axes_that_are_no_numbers_command_nothing(base: Callable[..., Any]) -> None:
-    """NaN is no speed, and an axis that is not there has none."""
+    """NaN is not a speed, and an axis that is not there has none."""
     wheels = await base()
     await wheels.hold(5, axes=(float("nan"),))
 

@@ -84,7 +84,7 @@ async def test_depths_become_compressed_ones(start: Start, viewer: Viewer) -> No
 async def test_colours_are_no_depths(
     start: Start, viewer: Viewer, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Who listens to compressedDepth of a colour camera is told; the other transports go on."""
+    """A listener to compressedDepth of a colour camera gets an error; other transports go on."""
     start(Republisher)
     viewer.look(CompressedImage, "out/compressedDepth")
     viewer.look(Image, "out")
@@ -136,7 +136,7 @@ async def test_format_and_quality_are_parameters(start: Start, viewer: Viewer) -
     [("mono8", 1, "mono8"), ("rgba8", 4, "rgba8"), ("bgra8", 4, "bgra8")],
 )
 def test_images_come_back_in_their_encoding(encoding: str, channels: int, back: str) -> None:
-    """What was grey stays grey; JPEG has no alpha channel, so it is opaque again."""
+    """Grey images stay grey; JPEG has no alpha channel, so it is opaque again."""
     pixels: npt.NDArray[np.uint8] = np.full((8, 8, channels), 255, np.uint8).squeeze()
 
     found = uncompressed(compressed(from_numpy(pixels, encoding), "jpeg", 95, 3))

@@ -49,7 +49,7 @@ ARM = """
 
 
 class Watcher:
-    """What the program publishes, and its joints."""
+    """The transforms that the program publishes, and its joints."""
 
     def __init__(self, node: Node) -> None:
         self.moved: list[Any] = []

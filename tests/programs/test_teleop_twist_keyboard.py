@@ -61,7 +61,7 @@ def test_keys_change_speeds_by_a_tenth() -> None:
 
 
 class Wheels:
-    """What a base hears."""
+    """The commands that a base receives."""
 
     def __init__(self, node: Any, kind: Any = Twist) -> None:
         self.speeds: list[float] = []

@@ -80,7 +80,7 @@ async def test_a_relay_publishes_what_it_receives(
 async def test_a_relay_has_the_qos_of_the_publishers(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
 ) -> None:
-    """What is latched stays so; what one publisher does not offer, the relay does not."""
+    """A latched topic stays latched; the relay does not offer what one publisher does not."""
     bench.node.create_publisher(String, "map", LATCHED).publish(String(data="floor"))
     node = start(Relay, input_topic="map", output_topic="floor_plan")
     await ready()
@@ -141,7 +141,7 @@ async def test_drop_leaves_out_the_first_x_of_y_messages(
 async def test_throttle_lets_as_many_messages_through_as_the_rate_says(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]], manual_clock: ManualClock
 ) -> None:
-    """Those between are dropped."""
+    """Messages in between are dropped."""
     publisher = bench.node.create_publisher(String, "chatter", 10)
     start(Throttle, "messages", "chatter", "2")
     bench.listen("chatter_throttle")
@@ -333,7 +333,7 @@ async def test_demux_needs_an_output(start: Start) -> None:
 async def test_relay_field_fills_a_message_with_expressions(
     bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
 ) -> None:
-    """What is no expression is a text, and a stamp may be now."""
+    """A value that is not an expression is a text, and a stamp may be now."""
     publisher = bench.node.create_publisher(String, "in", 10)
     words = ["in", "out", "std_msgs/msg/Header", "{stamp: now, frame_id: m.data + '_frame'}"]
     heard: list[Header] = []

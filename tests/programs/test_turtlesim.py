@@ -74,7 +74,7 @@ class Pond:
 
     @property
     def place(self) -> tuple[float, float, float]:
-        """Where the turtle is."""
+        """The place of the turtle."""
         return self.pose.x, self.pose.y, self.pose.theta
 
 

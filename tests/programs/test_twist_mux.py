@@ -32,7 +32,7 @@ PARAMETERS: dict[str, Any] = {
 
 
 class Robot:
-    """Who commands, and what the base gets."""
+    """The commanding nodes, and the commands that the base receives."""
 
     def __init__(self, node: Any, kind: Any = Twist) -> None:
         self.speeds: list[float] = []

@@ -41,7 +41,7 @@ ENDS: dict[str, Callable[[], object]] = {}
 
 
 class Failure(Exception):  # noqa: N818  # raised on purpose
-    """What a callback or a handler raises."""
+    """The exception that a callback or a handler raises."""
 
 
 def end(work: Callable[[], object]) -> Callable[[], object]:

@@ -463,7 +463,7 @@ async def test_an_async_node_needs_no_executor() -> None:
 
 @pytest.mark.usefixtures("initialised")
 async def test_an_async_node_calls_guard_conditions_that_it_creates_while_it_runs() -> None:
-    """Those of other entities created then are called, too."""
+    """Callbacks of other entities created then are called, too."""
     async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):
         called = asyncio.Event()
 

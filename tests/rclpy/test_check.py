@@ -305,7 +305,7 @@ def test_what_does_not_happen_here_is_not_missed(program: Path, source: str) -> 
     ids=["a long sum", "a long chain of calls"],
 )
 def test_an_expression_may_be_deeply_nested(program: Path, source: str) -> None:
-    """As in generated tables; a traceback is no answer."""
+    """As in generated tables; a traceback is not an answer."""
     assert findings(program, source + "import nothing_a\n") == ({"nothing_a": "missing"}, False)
 
 

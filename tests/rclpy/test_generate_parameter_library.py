@@ -120,7 +120,7 @@ def test_a_value_that_is_not_valid_is_refused(make: Any) -> None:
 
 
 def test_a_change_makes_the_parameters_old_and_is_told(make: Any) -> None:
-    """What a program has is a copy."""
+    """The program has a copy."""
     node, listener = make(tool="cup")
     params = listener.get_params()
     said: list[Any] = []
@@ -163,8 +163,11 @@ def test_parameters_are_set_by_a_dict(make: Any) -> None:
         ("gripper: {a: {type: colour}}", "gripper.a: no type 'colour'"),
         ("gripper: {a: {type: int, defualt: 3}}", "gripper.a: 'defualt' is not known"),
         ("gripper: {a: {default_value: 3}}", "gripper.a: it has no 'type'"),
-        ("gripper: {a: {type: int, default_value: x}}", "gripper.a: the default 'x' is no int"),
-        ("gripper: {a: {type: int_array, default_value: 3}}", "is no int_array"),
+        (
+            "gripper: {a: {type: int, default_value: x}}",
+            "gripper.a: the default 'x' is not of type int",
+        ),
+        ("gripper: {a: {type: int_array, default_value: 3}}", "is not of type int_array"),
         ("gripper: {a: {type: int, validation: {odd<>: null}}}", "no validator 'odd<>'"),
         ("gripper: 5", "gripper: neither"),
         ("{a: {}, b: {}}", "not below one name"),

@@ -74,12 +74,12 @@ def test_a_handler_creates_and_destroys_entities_while_the_main_thread_does() ->
 
 
 def test_a_handler_raises_at_any_place() -> None:
-    """Like a handler that ends a program: messages sent after it are received."""
+    """It is like a handler that ends a program: messages sent after it are received."""
     assert run("raises") == WELL
 
 
 def test_a_handler_that_puts_itself_off_raises_at_any_place() -> None:
-    """Like rclpy's own: with it, the main thread sends and reads itself."""
+    """It is like rclpy's own: with it, the main thread sends and reads itself."""
     assert run("puts_itself_off") == WELL
 
 

@@ -180,7 +180,7 @@ def grid(width: int, height: int, **costs: int) -> Any:
 
 
 def test_a_costmap_has_cells_and_places() -> None:
-    """What is unknown, -1 in the message, is 255."""
+    """Unknown cells, -1 in the message, are 255."""
     costmap = grid(4, 3, at_1_2=100, at_3_0=-1)
 
     assert (costmap.getSizeInCellsX(), costmap.getSizeInCellsY()) == (4, 3)

@@ -349,7 +349,7 @@ def test_a_message_is_forgotten_as_the_policy_says(
 
 
 def test_a_field_is_compared(node: Any) -> None:
-    """What is not so is RUNNING or FAILURE, as is asked for; a wrong name fails."""
+    """A mismatch is RUNNING or FAILURE, as configured; a wrong name fails."""
 
     def check(**options: Any) -> Any:
         behaviour = set_up(
@@ -661,7 +661,7 @@ def test_the_watcher_lists_fields_below_their_variable(capsys: pytest.CaptureFix
 
 
 def test_the_workspaces_own_package_comes_first(tmp_path: Path) -> None:
-    """Who has upstream's sources runs those."""
+    """A workspace with upstream's sources runs those."""
     from aionode._packages import use
     from aionode.rclpy._finder import gives_way
 

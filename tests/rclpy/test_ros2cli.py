@@ -218,7 +218,7 @@ def test_a_profile_has_the_policies_that_options_name() -> None:
 
 
 def test_options_of_commands_are_parsed() -> None:
-    """Those of the node, and those of a profile."""
+    """The options are those of the node and of a profile."""
     parser = argparse.ArgumentParser()
     add_arguments(parser)
     ros2topic.api.add_qos_arguments(parser, "publish", "default")

@@ -126,7 +126,7 @@ def test_python_that_leaves_the_current_folder_out_keeps_its_path(
 
 
 def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
-    """Like ``python -m``, with the whole path in its arguments."""
+    """It runs like ``python -m``, with the whole path in its arguments."""
     done = run(folder, "run", "-m", "program", "exit", module="aionode")
 
     assert done.returncode == 7
@@ -287,7 +287,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
             *(("-m", "nothing"), "aionode.rclpy: No module named nothing"),
             marks=pytest.mark.stress,
         ),
-        (("-m", "helper:no name"), "aionode.rclpy: helper:no name is no MODULE:FUNCTION"),
+        (("-m", "helper:no name"), "aionode.rclpy: helper:no name is not MODULE:FUNCTION"),
         (("--interfaces", "nothing", "program.py"), "aionode.rclpy: nothing: no such folder"),
         (("--nothing",), "usage: python -m aionode.rclpy"),
         pytest.param((), "usage: python -m aionode.rclpy", marks=pytest.mark.stress),
@@ -296,7 +296,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
 def test_what_cannot_run_is_reported_in_one_line(
     folder: Path, command: tuple[str, ...], problem: str
 ) -> None:
-    """Like Python, with its exit status."""
+    """The error is like Python's, with its exit status."""
     done = run(folder, *command)
 
     assert done.returncode == 2

@@ -127,7 +127,7 @@ def test_the_core_gives_messages_times_and_errors_of_rclpys_kind() -> None:
 
 
 def test_a_wait_with_a_limit_ends_as_soon_as_the_transform_is_there() -> None:
-    """tf2_ros polls every 20 ms; a limit that passes is no error by itself."""
+    """tf2_ros polls every 20 ms; a limit that passes is not an error by itself."""
     buffer = Buffer()
     assert not buffer.can_transform("a", "b", Time(), timeout=Duration(nanoseconds=1))
     timer = threading.Timer(0.01, lambda: buffer.set_transform(stamped("a", "b"), "me"))

@@ -65,7 +65,7 @@ def alive(pid: int | None) -> bool:
 
 
 async def test_a_program_runs_until_the_block_is_left(system: System) -> None:
-    """That is the promise of `async with`."""
+    """`async with` promises that."""
     async with system:
         system.process("sleeper", FOREVER)
         await system.ready()
@@ -338,7 +338,7 @@ async def test_ready_names_what_is_missing_and_shows_the_last_lines(system: Syst
 
 
 async def test_ready_fails_at_once_for_a_program_that_has_ended(system: System) -> None:
-    """What is awaited can no longer happen."""
+    """The awaited fact can no longer happen."""
     async with system:
         system.process("driver", ["sh", "-c", "exit 4"], ready=NodeExists("/driver"))
         with pytest.raises(NotReadyError, match="ended with exit status 4"):
@@ -471,7 +471,7 @@ async def test_one_member_is_stopped_and_restarted_by_name(system: System) -> No
 
 
 async def test_health_says_who_is_not_well(system: System) -> None:
-    """That is the answer of /healthz."""
+    """/healthz answers with it."""
     async with system:
         system.process("good", FOREVER)
         system.process("bad", ["sh", "-c", "exit 1"])
@@ -571,7 +571,7 @@ async def test_what_is_awaited_comes_with_the_node_that_has_it(system: System) -
 
 
 async def test_a_node_that_fails_is_restarted(system: System) -> None:
-    """Like a process, by the same policy."""
+    """It is restarted like a process, by the same policy."""
     nodes: list[Beacon] = []
 
     def make() -> Beacon:

@@ -91,7 +91,7 @@ async def test_a_transform_that_is_there_needs_no_wait(buffer: Buffer) -> None:
 
 
 async def test_a_wait_ends_when_the_last_piece_arrives(buffer: Buffer) -> None:
-    """Neither frame exists at first, and other frames do not matter."""
+    """None of the frames exists at first, and other frames do not matter."""
     task = await waiting(buffer.wait_for_transform("map", "camera", at(1.5)))
     put(buffer, transform("base", "camera", 1.0), transform("base", "camera", 2.0))
     put(buffer, transform("map", "odom", 1.5), transform("other", "x", 1.5))

@@ -77,7 +77,7 @@ class Say(ServiceType, typename="tutorial/srv/Say"):
     """A service written by hand."""
 
     class Request(Message):
-        """What to say."""
+        """The words to say."""
 
         words: Words = DEFAULT
 
@@ -217,7 +217,7 @@ async def types_by_name(node: Node) -> None:
 
 
 async def any_service(node: Node, name: str, type_name: str, given: object) -> dict[str, object]:
-    """What tools for agents, panels and recorders do: twelve lines over any service."""
+    """Call any service in twelve lines, as tools for agents, panels and recorders do."""
     service = await node.find_service(type_name)
     text, _ = documentation(service)
     schema: dict[str, object] = json_schema(service.Request)
@@ -267,7 +267,7 @@ def numbers(values: npt.NDArray[np.float64]) -> float:
 
 
 def parameters_and_arrays(node: Node) -> None:
-    """What is declared has a type; and arrays of messages go where arrays are wanted."""
+    """Declared parameters have a type; arrays of messages go where arrays are wanted."""
     assert_type(node.declare_parameter("speed", 0.5).value, float)
     assert_type(node.declare_parameter("count", 5).value, int)
     assert_type(node.declare_parameter("on", True).value, bool)
@@ -316,7 +316,7 @@ async def supervised() -> None:
 
 
 def functions() -> None:
-    """What describes and copies keeps the type."""
+    """Functions that describe or copy keep the type."""
     assert_type(snapshot(String(data="hi")), String)
     assert_type(snapshotter(Twist)(Twist()), Twist)
     assert_type(from_json(Twist, to_json(Twist())), Twist)

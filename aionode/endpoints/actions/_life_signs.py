@@ -76,7 +76,7 @@ class LifeSigns:
             self.remove(goal_id)
 
     def leave(self, on_answered: Callable[[], None]) -> list[asyncio.Future[Any]]:
-        """Stop sending signs, and tell the servers that this is no loss, so that the goals go on.
+        """Stop sending signs, and tell the servers that this is not a loss, so the goals go on.
 
         Args:
             on_answered: Called after each answer.

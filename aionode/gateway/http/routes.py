@@ -66,8 +66,8 @@ NAMELESS: Final = (
 topic."""
 
 EXPECTED: Final = {404, 503, 504}
-"""The codes of errors that are no refusal: unknown names, the end of the gateway, and no message in
-time."""
+"""The codes of errors that are not refusals: unknown names, the end of the gateway, and no message
+in time."""
 
 Handler = Callable[[Asked], Awaitable[Response]]
 

@@ -268,7 +268,7 @@ class McpServer:
 
     @asynccontextmanager
     async def _asked(self, context: Any) -> AsyncIterator[Session]:
-        """Yield the session of a request that is no call; its errors become errors of the protocol.
+        """Yield the session of a request other than a call; errors become errors of the protocol.
 
         Raises:
             MCPError: the request is refused, or its subject does not exist.

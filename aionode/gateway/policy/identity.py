@@ -71,7 +71,7 @@ class Credentials(msgspec.Struct, frozen=True):
 
     @property
     def is_loopback(self) -> bool:
-        """Whether the client runs on this host and is no proxy, which may speak for anybody."""
+        """Whether the client runs on this host and is not a proxy, which may speak for anybody."""
         address = parsed_address(self.address)
         return address is not None and address.is_loopback and not self.is_forwarded
 

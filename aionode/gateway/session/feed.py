@@ -188,7 +188,7 @@ class Feed:
     def _subscribe(self) -> None:
         if self._subscription is not None:
             self._subscription.destroy()
-        # A new publisher's different QoS is no mistake: the feed subscribes again for it.
+        # A new publisher's different QoS is not a mistake: the feed subscribes again for it.
         ignore = None if self._wanted is not None else ignore_incompatible_qos
         self._subscription = parts_subscription(
             self._node,

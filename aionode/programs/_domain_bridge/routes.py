@@ -157,7 +157,7 @@ def domain_of(value: Any, what: str) -> int:
     """Return a domain id.
 
     Raises:
-        RouteError: It is none.
+        RouteError: The value is not a domain id.
     """
     if type(value) is int and 0 <= value <= MAX_DOMAIN:
         return value

@@ -294,7 +294,7 @@ class Measuring:
         covariance: Array,
         mask: Mask,
     ) -> Measurement | None:
-        """Return the measurement of a part of the state; None if its covariance is no number."""
+        """Return the measurement of a part of the state; None if its covariance is not a number."""
         state, whole = np.zeros(SIZE), np.zeros((SIZE, SIZE))
         state[part], whole[part, part] = values, covariance
         if self.frames.is_flat:

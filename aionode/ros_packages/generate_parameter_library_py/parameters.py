@@ -386,7 +386,9 @@ def default_of(value: Any, base: str, is_array: bool, where: str) -> Any:
     for each in values:
         is_whole = type(each) is int and base == "double"
         if is_array is not isinstance(value, list) or not (type(each) is cls or is_whole):
-            raise ValueError(f"{where}: the default {value!r} is no {base}{'_array' * is_array}")
+            raise ValueError(
+                f"{where}: the default {value!r} is not of type {base}{'_array' * is_array}"
+            )
     converted = [cls(each) for each in values]
     return converted if is_array else converted[0]
 

@@ -14,7 +14,7 @@ class LineIterator:
     """Goes along a line in steps of its abscissa, or of its ordinate where that does not change.
 
     Raises:
-        TypeError: A coordinate or the step is no number.
+        TypeError: A coordinate or the step is not a number.
         ValueError: The step is not positive, or the line has no length.
     """
 

@@ -131,7 +131,7 @@ async def after_move_on(wait: Wait, ends: Ends) -> None:
 
 
 async def by_a_task_group(wait: Wait, ends: Ends) -> None:
-    """Like frameworks built on anyio, such as those for tools of language models."""
+    """Frameworks built on anyio do so, such as those for tools of language models."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(wait, ends.client)
         await ends.worker.has_begun.wait()
@@ -377,7 +377,7 @@ async def faults() -> AsyncIterator[tuple[FaultyTransport, Ends]]:
 
 
 async def test_a_lost_request_is_sent_again(faults: tuple[FaultyTransport, Ends]) -> None:
-    """Until the server has answered."""
+    """It is sent until the server has answered."""
     transport, ends = faults
     task = beside(ends.client.call(Fibonacci.Goal()))
     goal = await ends.worker.begun.get()

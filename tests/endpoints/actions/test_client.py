@@ -705,7 +705,7 @@ async def test_a_new_server_does_not_know_the_goals_of_the_old_one(ends: Ends) -
 
 
 async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
-    """Without time to keep it, a result can be gone before it is requested; that is no error."""
+    """Without time to keep it, a result can be gone before its request; that is not an error."""
     server = ends.serving.create_action_server(Fibonacci, "other", ends.worker)
     client: Client = ends.asking.create_action_client(Fibonacci, "other")
     await client.wait_for_server()

@@ -73,7 +73,7 @@ def beside(work: Any) -> asyncio.Task[Any]:
 
 
 class Ends(NamedTuple):
-    """What a program needs: its context, and a server."""
+    """A context and a server, which a program needs."""
 
     context: Context
     server: ActionServer[Any, Any, Any]

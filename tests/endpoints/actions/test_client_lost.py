@@ -77,7 +77,7 @@ def client(owner: Node) -> PlainClient:
 
 @pytest.fixture
 def worker() -> Worker:
-    """What executes goals until the test lets it end."""
+    """A worker that executes goals until the test lets it end."""
     return Worker()
 
 
@@ -335,7 +335,7 @@ def graph() -> Graph:
 
 @pytest.fixture
 def watch(graph: Graph, lost: Lost, manual_clock: ManualClock) -> Iterator[ClientWatch]:
-    """What watches the clients of goals, without a server."""
+    """A watch of the clients of goals, without a server."""
     watch = ClientWatch(
         "/fibonacci/_action/send_goal",
         graph,
@@ -554,7 +554,7 @@ async def test_no_goal_is_watched_that_has_ended_or_never_was(
     ],
 )
 async def test_a_wrong_choice_is_refused(serve: Serve, options: dict[str, Any], text: str) -> None:
-    """Where it was made."""
+    """The error comes where the choice was made."""
     with pytest.raises(ValueError, match=text):
         serve(**options)
 

@@ -159,7 +159,7 @@ def test_a_request_for_a_goal_that_cannot_be_cancelled_says_terminated(status: s
 
 @pytest.mark.parametrize("asked", [GoalKey(ALL_GOALS, 0), GoalKey(ALL_GOALS, 500)])
 def test_a_request_for_many_passes_over_those_that_have_ended(asked: GoalKey) -> None:
-    """Cancelling all is no mistake if some have ended."""
+    """Cancelling all is not a mistake if some have ended."""
     goals = [GoalKey(ONE, 100, GoalStatus.SUCCEEDED), GoalKey(TWO, 200, GoalStatus.EXECUTING)]
 
     assert goals_to_cancel(goals, asked) == (CancelCode.NONE, [TWO])

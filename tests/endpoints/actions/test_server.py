@@ -44,7 +44,7 @@ def client(node: Node) -> PlainClient:
 
 @pytest.fixture
 def worker() -> Worker:
-    """What executes goals until the test lets it end."""
+    """A worker that executes goals until the test lets it end."""
     return Worker()
 
 
@@ -849,7 +849,7 @@ async def test_a_timeout_that_is_no_time_is_refused(serve: Serve, wrong: float) 
 
 
 async def test_a_result_may_be_reused_by_the_callback(serve: Serve, client: PlainClient) -> None:
-    """What was given is copied, as in publish()."""
+    """The given result is copied, as in publish()."""
     result = Fibonacci.Result(sequence=[1])
 
     async def execute(goal: Goal) -> Fibonacci.Result:

@@ -74,7 +74,7 @@ class Failing:
 
     @property
     def options(self) -> dict[str, Any]:
-        """What the entity is created with."""
+        """The options with which the entity is created."""
         return {"offload": True} if self.kind == "offload" else {}
 
 
@@ -175,7 +175,7 @@ async def fails(node: Node) -> None:
 
 
 async def test_an_event_callback_fails_its_node(node: Node, mistake: Callable[[], None]) -> None:
-    """Like that of a subscription, and never silently."""
+    """It does so like that of a subscription, and never silently."""
     failing = Failing("sync", mistake)
     own = Node("watcher", context=node.context)
     events = PublisherEventCallbacks(matched=one_argument(failing))

@@ -292,7 +292,7 @@ async def test_a_report_says_if_the_thread_did_not_run(
     waited_ns: int | None,
     said: str,
 ) -> None:
-    """Where the system does not tell who kept it from running, the load is a hint."""
+    """Where the system does not say who kept it from running, the load is a hint."""
     monkeypatch.setattr("os.getloadavg", lambda: (load, load, load))
     monkeypatch.setattr("aionode.endpoints.core.thread_time.thread_waited_ns", lambda: waited_ns)
     # What the test itself runs before the callback would count: there was no callback before it.

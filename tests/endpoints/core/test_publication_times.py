@@ -14,7 +14,7 @@ S = 10**9
 MS = 10**6
 GID = bytes(15) + b"1"
 BEGAN = -1_700_000_000 * S
-"""What the steady clock of these tests showed when the system clock showed 0."""
+"""The time that the steady clock of these tests showed when the system clock showed 0."""
 
 
 class Stream:
@@ -38,7 +38,7 @@ class Stream:
 def test_a_stream_shows_the_difference_of_the_clocks(
     fast_ns: int, delays: list[int], held_ns: int
 ) -> None:
-    """Up to the shortest delay; then a delayed message is recognized."""
+    """It shows it up to the shortest delay; then a delayed message is recognized."""
     stream = Stream(fast_ns)
     for number, delay_ns in enumerate(delays):
         stream.come(number * 100 * MS, number * 100 * MS + delay_ns)

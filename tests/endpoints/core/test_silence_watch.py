@@ -47,7 +47,7 @@ async def teleop(node_factory: Callable[..., Node]) -> Node:
 
 
 class Driven:
-    """What has reached the wheels: the numbers of commands, and ``stop``."""
+    """The commands that have reached the wheels: their numbers, and ``stop``."""
 
     def __init__(self) -> None:
         self.log: list[int | str] = []
@@ -208,7 +208,7 @@ async def test_the_end_of_the_last_publisher_stops_at_once(
 async def test_another_that_was_heard_lately_goes_on(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """Until it has gone as well, or is silent."""
+    """It goes on until it has gone as well, or is silent."""
     wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=1)
     publishers = [teleop.create_publisher(Int32, "n", 10) for _ in range(2)]
     send(publishers[0], 1)
@@ -488,7 +488,7 @@ async def test_an_async_stop_comes_before_later_messages(
 async def test_an_error_of_the_stop_ends_the_node(
     aionode_context: Context, clock: ManualClock
 ) -> None:
-    """Like that of the callback: the robot is in an unknown state."""
+    """As with an error of the callback, the robot is in an unknown state."""
 
     def stop() -> None:
         raise ZeroDivisionError("no brakes")

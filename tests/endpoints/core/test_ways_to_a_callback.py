@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 GID: Final = bytes(16)
 
 SYNC: Final = ("nothing", "value", "raises", "stops", "cancels")
-"""What a callback may do with a message: the last three raise ValueError and so on."""
+"""The actions of a callback on a message: the last three raise ValueError and so on."""
 
 AWAITS: Final = ("awaits", "raises later")
-"""What it may do besides where it does not run in a thread."""
+"""Further actions of a callback that does not run in a thread."""
 
 ERRORS: Final = {"raises": ValueError, "stops": StopIteration, "cancels": asyncio.CancelledError}
 

@@ -125,7 +125,7 @@ async def test_cancelling_a_wait_loses_no_event(node: Node) -> None:
 
 
 async def test_an_exception_in_an_event_callback_ends_the_node() -> None:
-    """Like in a subscription's callback: no caller waits for an answer."""
+    """No caller waits for an answer, as with a subscription's callback."""
 
     def fail(event: MatchedInfo) -> None:
         raise ValueError(f"{event.current_count} is too many")

@@ -130,7 +130,7 @@ async def test_a_process_that_hangs_is_not_alive(
 
 
 async def test_a_publisher_that_goes_is_not_counted_any_more(pair: Pair) -> None:
-    """Neither as alive nor as not alive."""
+    """It counts neither as alive nor as not alive."""
     publisher, subscription = await pair.joined(AUTOMATIC, AUTOMATIC)
     changed = subscription.events
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE

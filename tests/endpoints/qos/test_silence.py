@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Driven:
-    """What has reached the wheels: the numbers of commands, and ``stop``."""
+    """The commands that have reached the wheels: their numbers, and ``stop``."""
 
     def __init__(self, pair: Pair, silence_sec: float) -> None:
         self.log: list[object] = []
@@ -54,7 +54,7 @@ async def test_a_topic_falls_silent(pair: Pair) -> None:
 
 
 async def test_the_last_publisher_is_destroyed(pair: Pair) -> None:
-    """That ends all commands at once; no time passes here."""
+    """Its end ends all commands at once; no time passes here."""
     driven = Driven(pair, 60)
     publisher = pair.talker.create_publisher(Int32, "n", 10)
     await pair.know_each_other(publisher, driven.subscription)

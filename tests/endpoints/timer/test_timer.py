@@ -530,7 +530,7 @@ def test_a_period_in_seconds_is_rounded_to_nanoseconds(seconds: float, ns: int) 
     ],
 )
 def test_what_is_no_period_is_refused(seconds: Any, error: type[Exception]) -> None:
-    """Where it is given."""
+    """The error comes where it is given."""
     with pytest.raises(error, match="period"):
         to_period_ns(seconds)
 

@@ -42,7 +42,7 @@ async def test_sends_happen_in_order_and_drain_waits_for_them(send_thread: SendT
     sent: list[int] = []
     send_queue = send_thread.send_queue(1000, keep_all=True)
     for n in range(100):
-        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # only a default
     await send_queue.drain()
 
     assert sent == list(range(100))
@@ -71,7 +71,7 @@ async def test_a_full_queue_that_keeps_the_last_drops_its_oldest(send_thread: Se
     send_queue = send_thread.send_queue(2, keep_all=False)
     gate = blocked(send_queue)
     for n in range(10):
-        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # only a default
     gate.set()
     await send_queue.drain()
 
@@ -115,7 +115,7 @@ async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(send_thread: 
     gate = blocked(send_queue)
     sent: list[int] = []
     for n in range(5):
-        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # only a default
     send_queue.abandon()
     gate.set()
     await send_queue.drain()

@@ -69,7 +69,7 @@ def test_dds_types_are_those_of_rmw_zenoh(kind: str) -> None:
 
 @given(st.integers(0, 2**32 - 1), NAMES, TYPES, WORDS)
 def test_parsing_undoes_writing(domain: int, name: str, type_name: str, type_hash: str) -> None:
-    """What a sample's key says is what its sender wrote."""
+    """The key of a sample says what its sender wrote."""
     key = key_expression.data_key(domain, name, type_name, type_hash)
 
     assert key_expression.parse_data_key(key) == key_expression.DataKey(

@@ -32,7 +32,7 @@ def test_a_hash_is_the_one_of_another_implementation() -> None:
 
 
 def test_the_parts_of_an_action_have_the_hashes_that_their_keys_need() -> None:
-    """Those of the send_goal and get_result services and of the feedback topic."""
+    """The parts are the send_goal and get_result services and the feedback topic."""
     expected = vectors("vectors")["actions"]["example_interfaces/action/Fibonacci"]
     ends = expected["endpoints"]
 

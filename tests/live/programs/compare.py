@@ -34,7 +34,7 @@ ENDS_SEC = 15.0
 TYPED_SEC = 4.0
 CALLING = "import sys; sys.argv = sys.argv[1:]; from {0} import {1}; sys.exit({1}())"
 VARIES = {"heard", "log"}
-"""What need not be equal from one run to the next; it is shown, and does not count."""
+"""Differences that are allowed between runs; they are shown, but do not count."""
 
 
 class Side:

@@ -89,7 +89,7 @@ def fill(message: Any, values: dict[str, Any]) -> Any:
 
 
 class Observer:
-    """What one node sees of the others."""
+    """The view of one node on the others."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         self.values = values

@@ -149,7 +149,7 @@ class Robot:
 
     @property
     def commands(self) -> dict[str, float]:
-        """What the hardware is told."""
+        """The commands to the hardware."""
         commands: dict[str, float] = self.manager.hardware.commands
         return commands
 

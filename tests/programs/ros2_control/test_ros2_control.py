@@ -86,7 +86,7 @@ def test_commands_are_copied_to_states() -> None:
 
 
 def test_with_dynamics_speeds_move_joints_and_positions_have_speeds() -> None:
-    """What is claimed last says how a joint is commanded."""
+    """The interface that was claimed last says how a joint is commanded."""
     hardware = hardware_of(MOVING)
     hardware.claim(["left/velocity", "lift/position"], "some")
     hardware.commands |= {"left/velocity": 2.0, "lift/position": 0.75}
@@ -126,7 +126,7 @@ def test_a_plugin_in_cpp_is_refused_with_what_to_use_instead() -> None:
 
 
 async def test_the_joints_are_broadcast(robot: Callable[..., Any]) -> None:
-    """Those of the URDF, with what they measure; all else is in the dynamic message."""
+    """They are those of the URDF; all other interfaces are in the dynamic message."""
     bot = await robot()
     heard = bot.hear(JointState, "joint_states")
     dynamic = bot.hear(DynamicJointState, "dynamic_joint_states")

@@ -254,7 +254,7 @@ async def test_a_trajectory_that_cannot_be_followed_is_rejected(
 
 
 async def test_a_trajectory_may_leave_joints_out_if_it_may(mover: Move) -> None:
-    """These stay where they are."""
+    """These joints stay where they are."""
     bot = await mover("allow_partial_joints_goal: true")
     publisher = bot.user.create_publisher(JointTrajectory, "mover/joint_trajectory", 10)
     publisher.publish(way((0.5, [1.0]), joints=("left",)))

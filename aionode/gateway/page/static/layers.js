@@ -67,7 +67,7 @@ function cloud({ fields, data, width, height, point_step, row_step, is_bigendian
 function grid({ info, data }) {
   const { width, height, resolution } = info;
   if (!(resolution > 0) || width * height > MOST_CELLS || width * height !== data.length || !data.length) {
-    throw new Error(`${width} × ${height} cells of ${resolution} m with ${data.length} values are no map`);
+    throw new Error(`${width} × ${height} cells of ${resolution} m with ${data.length} values are not a map`);
   }
   const canvas = new OffscreenCanvas(width, height);
   const image = new ImageData(width, height);

@@ -203,7 +203,7 @@ def poses_in(text: str) -> dict[str, dict[str, Any]]:
             continue
         pose = loaded_yaml(written)
         if not isinstance(pose, dict):
-            raise SubstitutionFailure(f"robots: {entry.strip()!r} is no NAME={{x: 1.0, yaw: 0.5}}")
+            raise SubstitutionFailure(f"robots: {entry.strip()!r} is not NAME={{x: 1.0, yaw: 0.5}}")
         poses[name.strip()] = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0) | pose
     return poses
 

@@ -48,7 +48,7 @@ def parsed(args: Sequence[str]) -> Arguments:
     Raises:
         UnknownROSArgsError: one is unknown.
         RCLInvalidROSArgsError: one is malformed.
-        UnicodeEncodeError: one is no text.
+        UnicodeEncodeError: one is not text.
     """
     for arg in args:
         arg.encode()

@@ -300,7 +300,7 @@ async def test_retransmissions_that_cannot_be_read_are_reported_once_in_a_while(
 
 
 async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder: Path) -> None:
-    """Neither silence, garbage, nor a frame before the Hello becomes a link."""
+    """Silence, garbage, or a frame before the Hello does not become a link."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         path = folder / f"{nodes.b.context.participant}.sock"

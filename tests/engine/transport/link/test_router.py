@@ -84,7 +84,7 @@ class Linked:
 
     @property
     def matching(self) -> router_matching.RouterMatching:
-        """What the publisher's context knows about its router."""
+        """The state of the router matching in the publisher's context."""
         zenoh_transport: Any = transport_of(self.nodes.a).zenoh
         return zenoh_transport._router_matching  # type: ignore[no-any-return]  # it is private
 

@@ -316,7 +316,7 @@ def test_what_is_looked_at_outlives_its_mapping(pool: BufferPool) -> None:
 
 
 def test_a_forgotten_mapping_leaves_nothing_open(pool: BufferPool) -> None:
-    """Neither descriptors nor pages remain; forgetting an unknown buffer does nothing."""
+    """No descriptor and no page remains; forgetting an unknown buffer does nothing."""
     one = filled(pool, bytes(SIZE))
     before = descriptors_and_maps()
     mappings = BufferMappings()

@@ -165,7 +165,7 @@ async def three_arrive(publisher: Publisher[Int32], reader: Subscription[Int32])
 
 
 async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: FakeRcl) -> None:
-    """Those of Cyclone DDS have none."""
+    """Messages of Cyclone DDS have none."""
     rcl.numbers = False
     publisher, reader = await matched(pair)
     await three_arrive(publisher, reader)

@@ -147,7 +147,7 @@ class Robot:
         publisher = node.create_publisher(cls, name, PROFILES[profile])
         await publisher.wait_for_subscribers()
         for one in published:
-            with suppress(AionodeError):  # of bytes that are no message
+            with suppress(AionodeError):  # of bytes that are not a message
                 publisher.publish(one)
         publisher.assert_liveliness()
         await publisher.drain()

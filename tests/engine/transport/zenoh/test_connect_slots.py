@@ -184,7 +184,7 @@ async def test_waiting_for_a_slot_can_be_cancelled(network: Network) -> None:
 def test_a_machine_is_busy_if_more_threads_run_than_it_has_processors(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, *, idle: bool
 ) -> None:
-    """Where that is unknown, nobody should wait."""
+    """Where the number of threads is unknown, nobody should wait."""
     load = tmp_path / "loadavg"
     monkeypatch.setattr(_connect_slots, "LOAD", load)
     monkeypatch.setattr(_connect_slots, "processors", lambda: 2)

@@ -97,7 +97,7 @@ DIFFERENT = {
     "MP/%/%/cap/%q_ba/": ("4:4:,10:,854775806:,:5,,854775806", ":1:,10:,:,:,,"),
     "MS/%/%/cap/%qs_ba/": ("4:4:,10:,854775806:,:5,,854775806", ":1:,10:,:,:3,,"),
 }
-"""What aionode declares differently on purpose: the recorded QoS, and its own."""
+"""The differences that are on purpose: the recorded QoS, and aionode's own."""
 
 
 def expected(text: str) -> str:

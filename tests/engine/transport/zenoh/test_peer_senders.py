@@ -38,7 +38,7 @@ async def peers(full: set[str]) -> AsyncIterator[PeerSenders]:
 
 
 class Sent:
-    """Where each job ran."""
+    """The thread in which each job ran."""
 
     def __init__(self) -> None:
         self.threads: list[threading.Thread] = []

@@ -179,7 +179,7 @@ async def test_a_ros_node_that_was_lost_hears_us_again() -> None:
 
 
 async def test_processes_without_a_meeting_port_find_each_other_again() -> None:
-    """Neither of the two dials the other by its configuration."""
+    """Neither dials the other by its configuration."""
     names = ("a1", "b2", "c3", "d4", "e5")
     async with AsyncExitStack() as stack:
         *_, one, two = [await stack.enter_async_context(context(name)) for name in names]
@@ -223,7 +223,7 @@ class Forgetful:
 
 @pytest.fixture
 def comparisons(monkeypatch: pytest.MonkeyPatch) -> Comparisons:
-    """What comparisons find, which are made again soon."""
+    """The findings of comparisons, which are made again soon."""
     monkeypatch.setattr(recovery, "AGAIN_S", 0.05)
     found: Comparisons = []
     take_comparison = Recovery._take_comparison
@@ -419,7 +419,7 @@ async def test_a_gossip_source_that_does_not_see_this_context_is_connected_anew(
 async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_its_tokens(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Those of Zenoh 1.7 and 1.8 bring them, but may not bring ours to the other side."""
+    """Routers of Zenoh 1.7 and 1.8 bring them, but may not bring ours to the other side."""
     async with context("a1") as ours, context("b2"):
         session = ours.session_state.session
         assert session is not None

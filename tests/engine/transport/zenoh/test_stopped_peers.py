@@ -145,7 +145,7 @@ async def test_a_process_that_is_stopped_for_a_moment_keeps_its_connections(
 async def test_a_process_that_returns_and_is_stopped_again_is_given_up_again(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was seen before counts no more."""
+    """Earlier checks no longer count."""
     frozen = scene.connect(11, monkeypatch)
     scene.stopped.add(11)
     await scene.step(GIVEN_UP_S)
@@ -188,7 +188,7 @@ MANY = range(11, 41)
 async def test_each_process_looks_at_a_few_others(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Those that started next, so that a hundred idle processes look 400 times, not 9900 times."""
+    """It checks those that started next: a hundred idle processes check 400 times, not 9900."""
     for pid in MANY:
         scene.connect(pid, monkeypatch)
 

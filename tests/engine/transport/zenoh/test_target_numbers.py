@@ -81,7 +81,7 @@ def test_a_message_that_comes_late_or_again_is_no_new_one(again: int) -> None:
 
 
 def test_publishers_that_number_messages_keep_their_numbers() -> None:
-    """Those of aionode and of ROS 2 before Lyrical, which use the key of all."""
+    """Nodes of aionode and of ROS 2 before Lyrical do so, and use the key of all."""
     numbers = TargetNumbers(lambda: 3)
 
     assert [numbers.number(GID, n, by_target=False) for n in (4, 5, 9)] == [4, 5, 9]

@@ -134,7 +134,7 @@ async def test_a_thread_of_zenoh_keeps_its_state(monkeypatch: pytest.MonkeyPatch
 
 
 async def test_samples_of_rmw_zenoh_are_heard() -> None:
-    """What its own encoder made, with its own attachment."""
+    """Its own encoder made them, with its own attachment."""
     async with quiet_node("listener") as node:
         with raw_session() as session:
             for number, (name, golden) in enumerate(MESSAGES.items(), 1):

@@ -217,7 +217,7 @@ def test_an_array_on_disk_is_encoded(tmp_path: Path) -> None:
     ],
 )
 def test_other_numbers_that_fit_are_encoded(field: str, given: Any, usual: Any) -> None:
-    """Those of numpy come out of every computation with arrays."""
+    """Every computation with arrays returns numbers of numpy."""
     assert cdr.encode(Mixed(**{field: given})) == cdr.encode(Mixed(**{field: usual}))
 
 
@@ -447,7 +447,7 @@ def test_a_bool_is_true_if_it_is_not_zero() -> None:
 
 
 def test_texts_that_changed_are_decoded_anew() -> None:
-    """Those of the last message are remembered, for when they come again."""
+    """The texts of the last message are remembered, for when they come again."""
     one = JointState(header=Header(frame_id="base"), name=["a", "b"])
     other = JointState(header=Header(frame_id="bass"), name=["a", "c"])
 
@@ -465,7 +465,7 @@ def test_a_list_of_texts_belongs_to_its_message() -> None:
 
 
 def test_a_known_text_that_is_cut_is_still_an_error() -> None:
-    """What is remembered stands for whole texts only."""
+    """Only whole texts are remembered."""
     encoded = cdr.encode(String(data="abc\0abc"))
     shorter = cdr.encode(String(data="abc"))
     cdr.decode(String, shorter)
@@ -541,7 +541,7 @@ def test_text_that_is_no_unicode_is_decoded_with_replacements(
 
 
 def test_text_that_is_no_unicode_is_decoded_in_sequences_and_nested_messages() -> None:
-    """What stands before it and after it is as it was."""
+    """The fields before and after it are unchanged."""
     message = JointState(header=Header(frame_id="xyz"), name=["abc", "def"], position=[1.0, 2.0])
     damaged = cdr.encode(message).replace(b"y", b"\xff").replace(b"e", b"\xe9")
 
@@ -614,7 +614,7 @@ class NoLimits(Message, typename="test/msg/Limits"):
     ],
 )
 def test_more_than_a_bound_allows_is_a_decode_error(values: dict[str, Any], path: str) -> None:
-    """What a reader gets always fits its own definition."""
+    """A message that a reader gets always matches its definition."""
     encoded = cdr.encode(NoLimits(**values))
 
     with pytest.raises(DecodeError, match="at most 2 are allowed") as caught:

@@ -21,7 +21,7 @@ from tests.support.strategies import message_classes, messages, packages_of, var
 CLASSES = message_classes()
 
 EXAMPLES = settings().max_examples
-"""Those of the profile of hypothesis."""
+"""The number of examples in hypothesis's profile."""
 
 few = settings(
     max_examples=max(3, EXAMPLES * 3 // 100),

@@ -1,3 +1,3 @@
-"""What a plugin uses of LeRobot 0.6, with its signatures: it is 8 GB and wants Python 3.12."""
+"""The parts of LeRobot 0.6 that a plugin uses; the real one is 8 GB and needs Python 3.12."""
 
 __all__: list[str] = []

@@ -60,7 +60,7 @@ def make_device_from_device_class(config: Choices) -> Any:
 
 
 class Device:
-    """What both begin and end with."""
+    """The base of robots and teleoperators."""
 
     id: str | None
 

@@ -141,7 +141,7 @@ def session_settings(
         "listen/endpoints": []
         if off
         else [f"tcp/{listening_address(network)}:{p}" for p in listen],
-        # A lost race for the port is no error. Retrying would make close() wait for the port.
+        # A lost race for the port is not an error. Retrying would make close() wait for the port.
         "listen/timeout_ms": 0,
         "listen/exit_on_failure": False,
         "connect/endpoints": [

@@ -1,3 +1,3 @@
-"""What all of LeRobot uses."""
+"""Names that all of LeRobot uses."""
 
 __all__: list[str] = []
