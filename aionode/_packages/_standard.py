@@ -52,6 +52,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     },
     "joy": {"joy_node": "_joy.joy_node"},
     "joy_linux": {"joy_linux_node": "_joy.joy_linux_node"},
+    "joy_teleop": {"joy_teleop": "_joy.joy_teleop"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},

@@ -1,0 +1,368 @@
+"""``joy_teleop joy_teleop``: buttons and axes publish messages, call services and send goals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import Any, Final
+
+import aionode
+from aionode import Node, QoSProfile
+from aionode.action import ActionClient
+from aionode.errors import AionodeError, CommandError, LeaseExpiredError
+from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.message import from_builtins, to_builtins, type_name
+from aionode.programs._leased_twists import TTL_SEC, LeasedCommands
+from aionode.programs._wall_timer import create_wall_timer
+
+__all__ = ["JoyTeleop", "main"]
+
+START_SEC: Final = 0.01
+MAX_INDEX: Final = 10_000
+"""The highest index in a list that an axis may set."""
+
+MOTION: Final = frozenset(
+    {
+        *("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"),
+        *("ackermann_msgs/msg/AckermannDrive", "ackermann_msgs/msg/AckermannDriveStamped"),
+    }
+)
+"""Commands to move until the next one, so that they end with a stop."""
+
+
+def interface(name: Any, kind: str) -> Any:
+    """Return the class of a type.
+
+    Raises:
+        CommandError: There is no such type.
+    """
+    package, given, short = [*str(name).split("/"), "", ""][:3]
+    if str(name).count("/") != 2:
+        raise CommandError(f"Invalid type_name '{name}'")
+    if given != kind:
+        raise CommandError(f"Cannot use interface of type '{given}' for an '{kind}'")
+    try:
+        return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), short)
+    except (ImportError, AttributeError, AionodeError) as error:
+        raise CommandError(f"type '{name}' is not here: {error}") from None
+
+
+def needed(config: Mapping[str, Any], key: str, command: str) -> Any:
+    """Return a parameter of a command.
+
+    Raises:
+        CommandError: It is missing.
+    """
+    if key not in config:
+        raise CommandError(f"command '{command}' has no '{key}'")
+    return config[key]
+
+
+def indices(config: Mapping[str, Any], key: str, command: str) -> list[int]:
+    """Return the numbers of buttons or axes.
+
+    Raises:
+        CommandError: They are none.
+    """
+    found = list(config.get(key, ()))
+    if all(isinstance(each, int) and each >= 0 for each in found):
+        return [int(each) for each in found]
+    raise CommandError(f"command '{command}': '{key}' is {found!r}; use numbers from 0 on")
+
+
+def message_of(cls: Any, values: Mapping[str, Any], command: str) -> Any:
+    """Return a message with these values.
+
+    Raises:
+        CommandError: They do not fit.
+    """
+    try:
+        return from_builtins(cls, values)
+    except AionodeError as error:
+        raise CommandError(f"command '{command}': {error}") from None
+
+
+def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
+    """Set a value in nested values."""
+    for name in path[:-1]:
+        whole = whole.setdefault(name, {})
+    whole[path[-1]] = value
+
+
+class Command:
+    """Something that buttons and axes do; it is active while all of them are pressed.
+
+    Args:
+        name: Its name in the parameters.
+        config: Its parameters.
+        prefix: That of the parameters with the buttons and axes.
+
+    Raises:
+        CommandError: There are none.
+    """
+
+    def __init__(self, name: str, config: Mapping[str, Any], prefix: str = "") -> None:
+        self.name = name
+        self.buttons, self.axes, self.negative = (
+            indices(config, f"{prefix}{key}", name) for key in ("buttons", "axes", "axes_negative")
+        )
+        if not (self.buttons or self.axes or self.negative):
+            raise CommandError(f"No buttons, axes or negative_axes configured for command '{name}'")
+        self.is_active = False
+
+    def is_pressed(self, joy: Joy) -> bool:
+        """Return whether its buttons and axes are pressed; those that are not there never are."""
+        return (
+            all(at < len(joy.buttons) and joy.buttons[at] == 1 for at in self.buttons)
+            and all(at < len(joy.axes) and joy.axes[at] == 1.0 for at in self.axes)
+            and all(at < len(joy.axes) and joy.axes[at] == -1.0 for at in self.negative)
+        )
+
+    def run(self, joy: Joy, *, is_new: bool) -> None:
+        """Do it, if it is active; `is_new` if it was not at the last message."""
+        raise NotImplementedError
+
+
+class MessageCommand(Command):
+    """Publishes a message, once each time it becomes active."""
+
+    def __init__(self, name: str, config: Mapping[str, Any], node: Node) -> None:
+        super().__init__(name, config, "deadman_")
+        self.node = node
+        self.kind = interface(needed(config, "interface_type", name), "msg")
+        values: dict[str, Any] = {}
+        for target, given in config["message_value"].items():
+            put(values, target.strip("-").split("-"), needed(given, "value", name))
+        self.message = message_of(self.kind, values, name)
+        topic = needed(config, "topic_name", name)
+        self.publisher = node.create_publisher(self.kind, topic, QoSProfile(depth=1))
+
+    def run(self, joy: Joy, *, is_new: bool) -> None:
+        """Publish the message."""
+        del joy
+        if self.is_active and is_new:
+            stamp(self.message, self.node)
+            self.publisher.publish(self.message)
+
+
+class AxesCommand(Command):
+    """Publishes what axes and buttons say, while it is active.
+
+    A command that moves a robot is published under a lease, so that a stop follows it.
+    """
+
+    def __init__(self, name: str, config: Mapping[str, Any], node: Node) -> None:
+        super().__init__(name, config, "deadman_")
+        self.node = node
+        self.kind = interface(needed(config, "interface_type", name), "msg")
+        self.mappings: dict[str, Mapping[str, Any]] = dict(config["axis_mappings"])
+        for mapping in self.mappings.values():
+            self.check(mapping)
+        self.neutral = to_builtins(self.kind())
+        self.as_int = {target for target in self.mappings if not self.takes_fraction(target)}
+        message_of(self.kind, self.values(Joy()), name)
+        topic = needed(config, "topic_name", name)
+        self.publisher = node.create_publisher(self.kind, topic, QoSProfile(depth=1))
+        self.command: Any = None
+        self.leased: LeasedCommands | None = None
+        if type_name(self.kind) in MOTION:
+            self.leased = LeasedCommands(
+                self.publisher, lambda: self.command, self.stop, self.on_expired
+            )
+            create_wall_timer(node, START_SEC, self.leased.drive)
+
+    def check(self, mapping: Mapping[str, Any]) -> None:
+        """Reject a mapping that does not say what to publish.
+
+        Raises:
+            CommandError: It does not.
+        """
+        if not {"axis", "button", "value"} & set(mapping):
+            raise CommandError(
+                f"Axis mapping for '{self.name}' must have an axis, button, or value"
+            )
+        for key in ("offset", "scale"):
+            if "axis" in mapping and key not in mapping:
+                raise CommandError(f"Axis mapping for '{self.name}' must have an {key}")
+        if not 0 <= mapping.get("index", 0) <= MAX_INDEX:
+            raise CommandError(f"'{self.name}': index is {mapping['index']}; use 0 to {MAX_INDEX}")
+
+    def takes_fraction(self, target: str) -> bool:
+        """Return whether a field takes numbers with a fraction."""
+        values: dict[str, Any] = {}
+        path = target.strip("-").split("-")
+        put(values, path, [0.5] if isinstance(self.present(path), list) else 0.5)
+        try:
+            from_builtins(self.kind, values)
+        except AionodeError:
+            return False
+        return True
+
+    def present(self, path: Sequence[str]) -> Any:
+        """Return the value of a field by default; None if there is none."""
+        value: Any = self.neutral
+        for name in path:
+            value = value.get(name) if isinstance(value, dict) else None
+        return value
+
+    def values(self, joy: Joy) -> dict[str, Any]:
+        """Return the values of the message for a joystick."""
+        result: dict[str, Any] = {}
+        for target, mapping in self.mappings.items():
+            path = target.strip("-").split("-")
+            value = self.value_of(target, mapping, joy)
+            if isinstance(self.present(path), list) and not isinstance(value, list):
+                parent: Any = result
+                for name in path[:-1]:
+                    parent = parent.get(name, {})
+                items = list(parent.get(path[-1], ()))
+                at = mapping.get("index", 0)
+                items += [0] * (at + 1 - len(items))
+                items[at] = value
+                value = items
+            put(result, path, value)
+        return result
+
+    def value_of(self, target: str, mapping: Mapping[str, Any], joy: Joy) -> Any:
+        """Return the value of a mapping; 0 for what the joystick does not have."""
+        if not {"axis", "button"} & set(mapping):
+            return mapping["value"]
+        what, given = ("axis", joy.axes) if "axis" in mapping else ("button", joy.buttons)
+        at, value = mapping[what], 0.0
+        if 0 <= at < len(given):
+            value = float(given[at]) * mapping.get("scale", 1.0) + mapping.get("offset", 0.0)
+        elif len(joy.axes):
+            self.node.get_logger().error(
+                f"Joystick has only {len(given)} of those (indexed from 0), but {what} #{at} was "
+                "referenced in config.",
+                throttle_duration_sec=5.0,
+            )
+        if not math.isfinite(value):
+            value = 0.0
+        return int(value) if target in self.as_int else value
+
+    def run(self, joy: Joy, *, is_new: bool) -> None:
+        """Publish what the axes say, or stop."""
+        del is_new
+        self.command = None
+        if self.is_active:
+            self.command = from_builtins(self.kind, self.values(joy))
+            stamp(self.command, self.node)
+        if self.leased is not None:
+            self.leased.repeat()
+        elif self.command is not None:
+            self.publisher.publish(self.command)
+
+    def stop(self) -> Any:
+        """Return the command to stand still."""
+        message = self.kind()
+        if self.command is not None and hasattr(message, "header"):
+            message.header.frame_id = self.command.header.frame_id
+        stamp(message, self.node)
+        return message
+
+    def on_expired(self, _: LeaseExpiredError) -> None:
+        """Forget the command of a joystick that sends nothing any more."""
+        self.command = None
+        self.node.get_logger().warning(
+            f"'{self.name}' stopped: the joystick sent nothing for {TTL_SEC:g} s; it is unplugged, "
+            "or its autorepeat_rate is too low"
+        )
+
+
+class CallCommand(Command):
+    """Calls a service or sends a goal, once each time it becomes active and there is a server."""
+
+    def __init__(self, name: str, config: Mapping[str, Any], node: Node) -> None:
+        super().__init__(name, config)
+        self.was_ready = False
+        self.is_ready: Callable[[], bool]
+        self.send: Callable[[Any], object]
+        type_given = needed(config, "interface_type", name)
+        if config["type"] == "service":
+            kind = interface(type_given, "srv")
+            self.request = message_of(kind.Request, config.get("service_request", {}), name)
+            client = node.create_client(kind, needed(config, "service_name", name))
+            self.is_ready, self.send = client.service_is_ready, client.call_async
+        else:
+            kind = interface(type_given, "action")
+            self.request = message_of(kind.Goal, config.get("action_goal", {}), name)
+            goals = ActionClient(node, kind, needed(config, "action_name", name))
+            self.is_ready, self.send = goals.server_is_ready, goals.send_goal_async
+
+    def run(self, joy: Joy, *, is_new: bool) -> None:
+        """Send the request; the answer is of no interest."""
+        del joy
+        if not self.is_active:
+            return
+        was_ready, self.was_ready = self.was_ready, self.is_ready()
+        if self.was_ready and (is_new or not was_ready):
+            self.send(self.request)
+
+
+def stamp(message: Any, node: Node) -> None:
+    """Set the time in the header of a message, if it has one."""
+    if hasattr(message, "header"):
+        message.header.stamp = node.get_clock().now().to_msg()
+
+
+def command_of(name: str, config: Mapping[str, Any], node: Node) -> Command:
+    """Return a command.
+
+    Raises:
+        CommandError: Its parameters do not fit.
+    """
+    kind = config.get("type")
+    if kind in ("service", "action"):
+        return CallCommand(name, config, node)
+    if kind != "topic":
+        raise CommandError(f"unknown type '{kind}' for command '{name}'")
+    if "message_value" in config and "axis_mappings" in config:
+        raise CommandError(
+            f"Only one of 'message_value' or 'axis_mappings' can be configured for command '{name}'"
+        )
+    if "message_value" in config:
+        return MessageCommand(name, config, node)
+    if "axis_mappings" in config:
+        return AxesCommand(name, config, node)
+    raise CommandError(f"No 'message_value' or 'axis_mappings' configured for command '{name}'")
+
+
+class JoyTeleop(Node):
+    """Does what its parameters say of the buttons and axes of the topic `joy`.
+
+    Raises:
+        CommandError: A parameter does not fit.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            "joy_teleop",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        whole: dict[str, Any] = {}
+        for name, parameter in sorted(self.get_parameters_by_prefix("").items()):
+            value = parameter.value
+            value = value.tolist() if hasattr(value, "tolist") else value
+            put(whole, name.split("."), value)
+        self.commands = [
+            command_of(name, config, self)
+            for name, config in whole.items()
+            if isinstance(config, dict) and "type" in config
+        ]
+        self.create_subscription(Joy, "joy", self.on_joy, QoSProfile(depth=1))
+
+    def on_joy(self, joy: Joy) -> None:
+        """Do what is commanded; what is not any more ends first, since others may follow it."""
+        states = [(command, command.is_pressed(joy)) for command in self.commands]
+        for command, is_pressed in sorted(states, key=lambda state: state[1]):
+            is_new = is_pressed and not command.is_active
+            command.is_active = is_pressed
+            command.run(joy, is_new=is_new)
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(JoyTeleop)
