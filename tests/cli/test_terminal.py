@@ -396,13 +396,12 @@ def test_programs_get_one_record_for_each_line(terminals: Terminals) -> None:
 
 
 def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
-    """It sees all nodes of the other process, and no router."""
+    """It sees all nodes of the other process, and no router; a busy machine is worth a hint."""
     text, status = terminals.shown("doctor")
 
-    assert status == 0
+    assert (status, "0 problem(s)" in text) == (0, True), text
     assert "Nodes: 4\n" in text
     assert "none" in text
-    assert "0 problem(s)" in text  # a busy machine is worth a hint
 
 
 @pytest.mark.slow

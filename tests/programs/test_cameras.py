@@ -211,7 +211,7 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
     ("kind", "parameters", "text"),
     [
         (UsbCam, {"video_device": "/dev/video77"}, "video_device '/dev/video77' does not exist"),
-        (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; yuyv, yuyv2rgb"),
+        (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; use yuyv, yuyv2rgb"),
         (UsbCam, {"framerate": 0.0}, "use numbers above 0"),
         (V4L2Camera, {"image_size": [640]}, "Invalid image size"),
         (V4L2Camera, {"output_encoding": "mono"}, "output_encoding 'mono'"),
