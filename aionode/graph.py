@@ -494,7 +494,7 @@ class Graph:
         publishes its log and describes its types, and an action is three services and two topics.
 
         Args:
-            user_only: Whether to leave infrastructure out, as `is_infrastructure` tells, and hidden
+            user_only: Whether to leave out infrastructure (see `is_infrastructure`) and hidden
                 nodes with all that only they have. Otherwise everything is there, and actions also
                 with the services and topics that they consist of.
         """

@@ -59,7 +59,7 @@ def run(
     would end the process: not if it is ignored, as under ``nohup``, or if the program has its own
     handler. From the first signal on, output to a terminal or pipe that nobody can read any more is
     dropped instead of raising OSError. The previous handlers are restored at the end. SIGTSTP
-    (Ctrl-Z) is handled only while a lease is open, also without this function: the stop is sent,
+    (Ctrl-Z) is handled only while a lease is open, even without this function: the stop is sent,
     and 0.2 s later the process is suspended.
 
     A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``

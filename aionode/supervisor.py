@@ -72,8 +72,8 @@ class Supervisor(Generic[NodeT]):
 
     Args:
         make_node: Creates the node, such as its class; called in the running loop for each start.
-        restart: ``"on-failure"``: when a callback raised; ``"always"``: also when the node was
-            destroyed; ``"no"``: never, only to report `health`.
+        restart: ``"on-failure"``: when a callback raised; ``"always"``: when the node was destroyed
+            as well; ``"no"``: never, only to report `health`.
         min_delay_sec: The first delay, in seconds.
         max_delay_sec: The longest delay, in seconds.
         clock: The time base of the delays, such as a `ManualClock`; the machine's by default.

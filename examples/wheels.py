@@ -51,7 +51,7 @@ class Wheels(Node):
         return Trigger.Response(success=True, message="the wheels obey commands again")
 
     async def guard(self) -> None:
-        """Stop when this node ends, also when it fails."""
+        """Stop when this node ends, even when it fails."""
         try:
             await asyncio.Event().wait()
         finally:

@@ -149,7 +149,7 @@ class EndHandler:
                 threading._register_atexit(self._handle_at_exit)  # type: ignore[attr-defined]
 
     def _handle_at_exit(self) -> None:
-        """Handle a second signal also while the interpreter exits after a first one.
+        """Handle a second signal even while the interpreter exits after a first one.
 
         It waits without a limit for threads and for the workers of process pools, and a worker that
         is stopped (SIGSTOP) does not end. Python's own handler ends just one of these waits. Other

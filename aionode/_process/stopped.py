@@ -39,7 +39,7 @@ def pid_space() -> int | None:
 
 
 def is_stopped(pid: int) -> bool:
-    """Return whether a signal or a debugger has stopped a process, as far as the system tells."""
+    """Return whether a signal or a debugger has stopped a process, as far as the system says."""
     try:
         descriptor = os.open(f"/proc/{pid}/stat", os.O_RDONLY)  # a third of the time of `Path`
     except OSError:  # it has ended, or the system hides it

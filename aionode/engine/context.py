@@ -547,7 +547,7 @@ class Context:
     # For tools
 
     def report(self) -> ProcessReport:
-        """Return what this context tells tools of its nodes, endpoints and callbacks."""
+        """Return the report of this context for tools: its nodes, endpoints and callbacks."""
         from aionode.engine.observation import process_report  # nobody may ever ask
 
         return process_report(self.participant, self.dropped, list(self._reporters.values()))

@@ -1,6 +1,6 @@
 """Interfaces of folders and of the workspace around the program, read on first use.
 
-`aionode.interfaces` looks up packages here that are not shipped, also for programs of rclpy. The
+`aionode.interfaces` looks up packages here that are not shipped, even for programs of rclpy. The
 order of the folders matters only for equal names: a type may use those of any folder, of
 aionode.interfaces and of the sourced ROS 2.
 """

@@ -267,7 +267,7 @@ def part_of(part: str, state: State | None, mimic: Mimic) -> float:
 
 
 def main() -> None:
-    """Run the node until Ctrl-C, also in place of the one with a window."""
+    """Run the node until Ctrl-C; it also replaces the one with a window."""
     if sys.argv[0] == "joint_state_publisher_gui":
         get_logger("joint_state_publisher").warning(
             "the window with the sliders is not available: joints stay at zero, or where the "

@@ -1,7 +1,7 @@
 """Poses as plain floats: how they are chained, inverted and interpolated.
 
 A pose is a tuple of seven floats: a translation (x, y, z) and the quaternion of a rotation
-(x, y, z, w). The formulas are those of tf2's LinearMath, also for quaternions whose length is not
+(x, y, z, w). The formulas are those of tf2's LinearMath, even for quaternions whose length is not
 quite 1, so that results agree with tf2.
 """
 

@@ -115,7 +115,11 @@ def test_arguments_take_precedence(write: Callable[[str], str]) -> None:
         ("lifespan: 1000", "lifespan: soon", "unsupported lifespan policy value 'soon'"),
         ("lifespan: 1000", "colour: red", "unsupported colour policy value 'red'"),
         ("automatic", "manual_by_topic", "unsupported liveliness policy value 'manual_by_topic'"),
-        ("name: my_bridge", "mode: compress", "mode 'compress' is not here; use 'normal'"),
+        (
+            "name: my_bridge",
+            "mode: compress",
+            "mode 'compress' is not available here; use 'normal'",
+        ),
         ("remap: robot/chatter", "remap: a//b", "a//b"),
         (CONFIG, "- a", "expected a map with 'topics'"),
         (CONFIG, "topics: []", "expected map value for 'topics'"),

@@ -142,8 +142,8 @@ def show(
     Args:
         cls: The class of the type.
         output: Where to print.
-        comments: Which comments to print: none, those of the type itself, or also those of nested
-            types. They come from the sourced ROS 2, or else from aionode.
+        comments: Which comments to print: none, those of the type itself, or those of nested types
+            as well. They come from the sourced ROS 2, or else from aionode.
     """
     from aionode.idl import definition_text
 

@@ -185,7 +185,7 @@ class NodeCore:
         self.at_end.append(self.context.add_reporter(self, self._report))
 
     def _report(self) -> NodeReport:
-        """Return what tools are told of the node."""
+        """Return the report of the node for tools."""
         # Nobody may ever ask.
         from aionode.endpoints.core.reports import entity_reports
         from aionode.engine.observation import NodeReport

@@ -1,4 +1,4 @@
-"""What a node tells tools of its endpoints, timers and actions."""
+"""The reports of a node's endpoints, timers and actions for tools."""
 
 from __future__ import annotations
 

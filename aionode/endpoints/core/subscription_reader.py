@@ -93,11 +93,11 @@ class SubscriptionReader(MessageQueue[Any]):
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
 
     Attributes:
-        monitor: Is told which publishers are alive, or None.
+        monitor: Learns which publishers are alive, or None.
         on_arrival: Called with each message; returns whether to deliver it. None delivers all.
         on_lost: Called with the number of missing messages, or None.
         runner: Runs the callback; unset without one, see `set_runner`.
-        watch: Is told of arriving messages, and may reject them, or None. With one, messages do not
+        watch: Sees arriving messages, and may reject them, or None. With one, messages do not
             bypass the queue.
     """
 

@@ -46,8 +46,8 @@ class GoalStore(dict[bytes, Any]):
         now_ns: Returns the current time.
         limit: Maximum number of active goals, and of ended goals that are kept.
         kept_ns: How long to keep goals after their end; negative for forever.
-        limit_bytes: Maximum size of the messages of active goals, and also of those of kept goals;
-            0 for no limit. A single one always fits.
+        limit_bytes: Maximum size of the messages of active goals, and likewise of those of kept
+            goals; 0 for no limit. A single one always fits.
         goal_class: The aionode class with the messages' fields; by default their own class.
 
     Attributes:

@@ -1,4 +1,4 @@
-"""The base of camera nodes: pictures of a device or a file become messages."""
+"""The base of camera nodes: publishes the pictures of a device or a file."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ class Items:
             self.items[status.name] = Item(status, self.now())
 
     def report(self) -> list[DiagnosticStatus]:
-        """Return the own state, and those of all parts."""
+        """Return the group's own state, and those of all parts."""
         now = self.now()
 
         def is_stale(item: Item) -> bool:
@@ -129,7 +129,7 @@ class Items:
         if all_stale:
             level = OK if self.is_forgetful else STALE
         elif level == STALE:
-            level = ERROR  # the own state is stale only if all parts are
+            level = ERROR  # the group's own state is stale only if all parts are
         message = NAMES[level]
         found = len(self.items)
         if self.expected == 0 and not found:
@@ -278,8 +278,8 @@ class Group:
     Attributes:
         path: The name of its own state; none if it is empty.
         name: The same for users.
-        analyzers: Those in it.
-        failed: Those that could not be created, by name, with the reason.
+        analyzers: The analyzers in it.
+        failed: The analyzers that could not be created, by name, with the reason.
     """
 
     path: str

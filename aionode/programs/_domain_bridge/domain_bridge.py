@@ -32,7 +32,7 @@ __all__ = ["Bridge", "bridges_for", "configured", "main"]
 
 CHECK_SEC: Final = 0.1
 CHECKS: Final = 5
-"""For so many checks there has to be a publisher before the bridge is made: others may follow."""
+"""The number of checks in a row that must find a publisher: others may follow the first one."""
 
 MAX_GIDS: Final = 1000
 
@@ -41,11 +41,11 @@ class Bridge:
     """Passes the messages of a topic from one domain to another, without decoding them.
 
     Args:
-        route: The topic and its way.
+        route: The topic and its domains.
         source: The node in the domain with the publishers.
         target: The node in the domain with the subscriptions.
-        is_mutual: Whether another bridge publishes on the topic in the first domain; what comes
-            from there does not go back.
+        is_mutual: Whether another bridge publishes on the topic in the first domain; its messages
+            are not sent back.
     """
 
     def __init__(self, route: Route, source: Node, target: Node, *, is_mutual: bool) -> None:
@@ -60,7 +60,7 @@ class Bridge:
         self.warned = ""
 
     async def check(self) -> None:
-        """Make the bridge, or remove it, as publishers and subscriptions come and go."""
+        """Create the bridge, or remove it, as publishers and subscriptions come and go."""
         route = self.route
         publishers = foreign(self.source.get_publishers_info_by_topic(route.topic), self.source)
         others = foreign(self.target.get_subscriptions_info_by_topic(route.renamed), self.target)
@@ -88,7 +88,7 @@ class Bridge:
         self.input = self.source.create_subscription(kind, route.topic, self.take, qos, raw=True)
 
     def remove(self) -> None:
-        """Destroy both."""
+        """Destroy the publisher and the subscription."""
         for entity in (self.input, self.output):
             if entity is not None:
                 entity.destroy()
@@ -102,7 +102,7 @@ class Bridge:
         self.output.publish(data)
 
     def is_own(self, gid: bytes) -> bool:
-        """Return whether a publisher in the first domain is one of the bridge."""
+        """Return whether a publisher in the first domain belongs to the bridge."""
         if gid not in self.own:
             if len(self.own) >= MAX_GIDS:
                 self.own.clear()
@@ -113,7 +113,7 @@ class Bridge:
         return self.own[gid]
 
     def qos_for(self, offered: Sequence[QoSProfile]) -> QoSProfile:
-        """Return the given policies, and otherwise those that fit all publishers."""
+        """Return a profile with the given policies, and others compatible with all publishers."""
         given = dict(self.route.qos)
         for name, strong, weak, words in (
             (
@@ -210,7 +210,7 @@ def parser() -> argparse.ArgumentParser:
     for name, text in (
         ("wait-for-subscription", "wait for a subscription before bridging a topic"),
         ("wait-for-publisher", "wait for a publisher before bridging a topic; by default true"),
-        ("auto-remove", "remove the bridge when what was waited for is gone"),
+        ("auto-remove", "remove the bridge when its publishers or subscriptions are gone"),
     ):
         result.add_argument(f"--{name}", choices=("true", "false"), help=text)
     result.add_argument("--mode", choices=("normal",), help="messages are never compressed here")
@@ -218,10 +218,10 @@ def parser() -> argparse.ArgumentParser:
 
 
 def configured(words: Sequence[str]) -> tuple[str, list[Route]]:
-    """Return the name of the bridge and its topics, by the arguments.
+    """Return the name of the bridge and its topics, according to the arguments.
 
     Raises:
-        RouteError: They cannot be used.
+        RouteError: The arguments cannot be used.
     """
     given = parser().parse_args(words)
     name, routes = "domain_bridge", list[Route]()

@@ -46,13 +46,13 @@ class Route:
         type_name: Its type, such as ``std_msgs/msg/String``.
         source: The domain with its publishers.
         target: The domain with its subscriptions.
-        renamed: Its name there.
-        qos: The policies that are given; the others follow the publishers.
-        is_reversed: Whether it goes from the target to the source.
-        is_bidirectional: Whether it goes both ways.
-        waits_for_publisher: Whether the bridge is made only when there is one.
-        waits_for_subscription: The same for a subscription.
-        is_removed: Whether the bridge ends when what it waited for is gone.
+        renamed: Its name in the target.
+        qos: The given policies; the others follow the publishers.
+        is_reversed: Whether messages go from the target to the source.
+        is_bidirectional: Whether messages go both ways.
+        waits_for_publisher: Whether to create the bridge only when there is a publisher.
+        waits_for_subscription: Whether to create the bridge only when there is a subscription.
+        is_removed: Whether the bridge ends when the awaited publishers or subscriptions are gone.
     """
 
     topic: str
@@ -69,14 +69,14 @@ class Route:
 
     @property
     def way(self) -> tuple[str, str, int, int, str]:
-        """What distinguishes it from others."""
+        """The values that distinguish it from other routes."""
         return self.topic, self.type_name, self.source, self.target, self.renamed
 
     def ways(self) -> list[Route]:
-        """Return it in its directions.
+        """Return one route for each of its directions.
 
         Raises:
-            RouteError: It goes from a domain to itself.
+            RouteError: The source and the target are the same domain.
         """
         if self.source == self.target:
             raise RouteError(
@@ -102,7 +102,7 @@ def routes_in(path: Path) -> tuple[str | None, list[Route]]:
 
 
 def parsed(node: Any) -> tuple[str | None, list[Route]]:
-    """Return what a configuration says; a topic may be there more than once.
+    """Return the name and the topics in a configuration; a topic may occur more than once.
 
     Raises:
         RouteError: It cannot be used.
@@ -113,7 +113,7 @@ def parsed(node: Any) -> tuple[str | None, list[Route]]:
     topics = whole.pop("topics", None)
     default = {key: value_of_node(value) for key, value in whole.items()}
     if default.get("mode", "normal") != "normal":
-        raise RouteError(f"mode {default['mode']!r} is not here; use 'normal'")
+        raise RouteError(f"mode {default['mode']!r} is not available here; use 'normal'")
     if topics is not None and not isinstance(topics, yaml.MappingNode):
         raise RouteError("expected map value for 'topics'")
     routes = [
@@ -125,10 +125,10 @@ def parsed(node: Any) -> tuple[str | None, list[Route]]:
 
 
 def route_of(topic: str, given: Any, default: Mapping[str, Any]) -> Route:
-    """Return the way of a topic.
+    """Return the route of a topic.
 
     Raises:
-        RouteError: Something is missing or does not fit.
+        RouteError: A value is missing or invalid.
     """
     if not isinstance(given, dict):
         raise RouteError("expected map value for each topic")

@@ -1,1 +1,1 @@
-"""imu_tools: the orientation of an IMU, from what it measures."""
+"""imu_tools: estimates the orientation of an IMU from its measurements."""

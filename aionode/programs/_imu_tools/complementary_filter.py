@@ -1,6 +1,6 @@
-"""The filter: gyroscopes say how it turns, gravity and the magnetic field keep it from drifting.
+"""The filter: it integrates gyroscopes, and gravity and the magnetic field correct the drift.
 
-It is that of Valenti, Dryanovski and Xiao, "Keeping a Good Attitude" (Sensors 2015, 15).
+It is the filter of Valenti, Dryanovski and Xiao, "Keeping a Good Attitude" (Sensors 2015, 15).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = ["GRAVITY", "ComplementaryFilter"]
 
 GRAVITY: Final = 9.81
 
-# What counts as standing still: deviation from gravity, angular velocity and its change.
+# Limits for standing still: deviation from gravity, angular velocity and its change.
 STILL_ACCELERATION: Final = 0.1
 STILL_VELOCITY: Final = 0.2
 STILL_CHANGE: Final = 0.01
@@ -39,16 +39,16 @@ NO_TURN: Final = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass
 class ComplementaryFilter:
-    """The orientation of an IMU.
+    """Estimates the orientation of an IMU.
 
     Attributes:
-        gain_acc: How much gravity corrects at each step, from 0 to 1.
-        gain_mag: How much the magnetic field does.
-        bias_alpha: How fast the bias follows, from 0 to 1.
-        estimates_bias: Whether the bias of the gyroscopes is estimated while it stands still.
-        has_adaptive_gain: Whether gravity counts less while it accelerates.
+        gain_acc: The share of the error that gravity corrects at each step, from 0 to 1.
+        gain_mag: The same for the magnetic field.
+        bias_alpha: The share by which the bias changes at each step, from 0 to 1.
+        estimates_bias: Whether to estimate the bias of the gyroscopes while the IMU stands still.
+        has_adaptive_gain: Whether gravity counts less while the IMU accelerates.
         bias: The bias of the gyroscopes.
-        is_still: Whether it stands still.
+        is_still: Whether the IMU stands still.
     """
 
     gain_acc: float = 0.01
@@ -69,12 +69,12 @@ class ComplementaryFilter:
     def update(
         self, acceleration: Vector, turning: Vector, seconds: float, magnetic: Vector | None = None
     ) -> bool:
-        """Use what an IMU measures.
+        """Update the orientation with a measurement.
 
         Args:
-            acceleration: With gravity, in m/s².
+            acceleration: The acceleration, including gravity, in m/s².
             turning: The angular velocity.
-            seconds: Since the last call.
+            seconds: The time since the last call.
             magnetic: The magnetic field, in any unit; None if it is unknown.
 
         Returns:
@@ -104,7 +104,7 @@ class ComplementaryFilter:
         return True
 
     def _predicted(self, world: Quaternion, turning: Vector, seconds: float) -> Quaternion:
-        """Return what the world looks like after a turn."""
+        """Return the world as the IMU sees it after a turn."""
         x, y, z = (now - bias for now, bias in zip(turning, self.bias, strict=True))
         change = product((0.0, -x, -y, -z), world)
         half = 0.5 * seconds
@@ -127,7 +127,7 @@ class ComplementaryFilter:
         return math.cos(half), 0.0, 0.0, math.sin(half)
 
     def _gain(self, acceleration: Vector) -> float:
-        """Return how much gravity corrects."""
+        """Return the share of the error that gravity corrects."""
         if not self.has_adaptive_gain:
             return self.gain_acc
         error = abs(math.hypot(*acceleration) - GRAVITY) / GRAVITY
@@ -135,7 +135,7 @@ class ComplementaryFilter:
         return self.gain_acc * min(1.0, max(0.0, factor))
 
     def _estimate_bias(self, acceleration: Vector, turning: Vector) -> None:
-        """Let the bias follow the angular velocity while it stands still."""
+        """Move the bias towards the angular velocity while the IMU stands still."""
         self.is_still = (
             abs(math.hypot(*acceleration) - GRAVITY) <= STILL_ACCELERATION
             and all(

@@ -24,7 +24,7 @@ __all__ = ["ComplementaryFilterNode", "main"]
 
 QUEUE: Final = 5
 SLOP_SEC: Final = 0.1
-"""How far apart the stamps of an IMU's and a magnetometer's message may be."""
+"""The maximum difference between the stamps of an IMU's and a magnetometer's message."""
 
 OVERRIDES: Final = QoSOverridingOptions(
     (
@@ -89,7 +89,7 @@ class ComplementaryFilterNode(Node):
         return 0.01
 
     def measure(self, msg: Imu, magnetometer: MagneticField | None = None) -> None:
-        """Publish a message with an orientation; the first one only tells the time."""
+        """Publish a message with an orientation; the first message only sets the time."""
         stamp_ns = int(msg.header.stamp.sec) * 10**9 + int(msg.header.stamp.nanosec)
         last_ns, self.last_ns = self.last_ns, stamp_ns
         if last_ns is None:

@@ -11,7 +11,7 @@ Vector = tuple[float, float, float]
 
 
 def product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """Return one rotation after another, the right one first."""
+    """Return the product of two rotations; the right one is applied first."""
     return (
         p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
         p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
@@ -38,7 +38,7 @@ def unit(q: Quaternion) -> Quaternion:
 
 
 def blended(q: Quaternion, gain: float) -> Quaternion:
-    """Return a part of a rotation: nothing of it for 0, all for 1."""
+    """Return a fraction of a rotation: none of it for 0, all of it for 1."""
     if q[0] < 0.0:  # more than half a turn: along the arc, since the straight line may meet zero
         angle = math.acos(max(-1.0, q[0]))
         if (sine := math.sin(angle)) > 0.0:
@@ -48,7 +48,7 @@ def blended(q: Quaternion, gain: float) -> Quaternion:
 
 
 def tilt(up: Vector) -> Quaternion:
-    """Return the rotation without a turn about the vertical that turns up to a direction."""
+    """Return the rotation, without a turn about the vertical, from up to a direction."""
     norm = math.hypot(*up)
     x, y, z = up[0] / norm, up[1] / norm, up[2] / norm
     if z >= 0.0:

@@ -1,1 +1,1 @@
-"""robot_localization: what several sensors say of where a robot is, as one estimate."""
+"""robot_localization: combines several sensors into one estimate of a robot's state."""

@@ -10,7 +10,7 @@ __all__ = ["EkfNode", "main"]
 
 
 class EkfNode(FilterNode):
-    """Estimates with a filter that takes the motion as linear near the estimate."""
+    """Estimates with a filter that linearizes the motion around the estimate."""
 
     def __init__(self) -> None:
         super().__init__("ekf_filter_node", lambda _: Ekf())

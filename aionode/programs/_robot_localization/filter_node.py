@@ -1,4 +1,4 @@
-"""``robot_localization ekf_node`` and ``ukf_node``: one estimate of what several sensors say."""
+"""``robot_localization ekf_node`` and ``ukf_node``: one estimate from several sensors."""
 
 from __future__ import annotations
 
@@ -56,14 +56,14 @@ SUMMARIES: Final = {
 }
 
 POSE_VARIANCE: Final = 1e-6
-"""Of what `set_pose` does not say."""
+"""The variance of the parts of a pose that `set_pose` does not set."""
 
 
 class FilterNode(SensingNode):
-    """Publishes where the robot is, and how it moves, on `odometry/filtered` and as a transform.
+    """Publishes the pose and twist of the robot, on `odometry/filtered` and as a transform.
 
-    The parameters ``odom0``, ``pose0``, ``twist0``, ``imu0`` and so on name the topics, and those
-    that begin with these names tell what of their messages counts.
+    The parameters ``odom0``, ``pose0``, ``twist0``, ``imu0`` and so on name the topics; parameters
+    that begin with these names select the values of their messages to use.
 
     Args:
         name: The name of the node.
@@ -87,7 +87,7 @@ class FilterNode(SensingNode):
         self.offer()
 
     def offer(self) -> None:
-        """Create what the node publishes and serves."""
+        """Create the publishers and services of the node."""
         overrides = QoSOverridingOptions.with_default_policies()
         self.output = self.create_publisher(
             Odometry, "odometry/filtered", 10, qos_overriding_options=overrides
@@ -141,7 +141,7 @@ class FilterNode(SensingNode):
         self.states.clear()
 
     def set_pose(self, msg: PoseWithCovarianceStamped) -> None:
-        """Put the robot elsewhere, where it stands still."""
+        """Set the pose of the robot, standing still."""
         frame = escaped(msg.header.frame_id, one_line=True)
         at = msg.pose.pose.position
         self.get_logger().info(
@@ -156,7 +156,7 @@ class FilterNode(SensingNode):
         state, covariance = np.zeros(SIZE), np.eye(SIZE) * POSE_VARIANCE
         if measurement is None or not np.isfinite(measurement.values).all():
             self.get_logger().error(
-                f"set_pose: the pose cannot be used: its numbers are not finite, or there is no "
+                "set_pose: the pose cannot be used: its numbers are not finite, or there is no "
                 f"transform from '{frame}' to '{self.frames.world}'"
             )
             return
@@ -165,12 +165,12 @@ class FilterNode(SensingNode):
         self.filter.place(state, covariance, self.now_ns())
 
     def on_set_pose(self, request: SetPose.Request, response: SetPose.Response) -> SetPose.Response:
-        """Put the robot elsewhere."""
+        """Set the pose of the robot."""
         self.set_pose(request.pose)
         return response
 
     def on_enable(self, _request: Any, response: Empty.Response) -> Empty.Response:
-        """Begin, if the node was started with `disabled_at_startup`."""
+        """Enable the filter, if the node was started with `disabled_at_startup`."""
         if self.is_enabled:
             self.get_logger().warning(
                 "Asking for enabling filter service, but the filter was already enabled! Use param "
@@ -192,7 +192,7 @@ class FilterNode(SensingNode):
         request: ToggleFilterProcessing.Request,
         response: ToggleFilterProcessing.Response,
     ) -> ToggleFilterProcessing.Response:
-        """Use measurements, or ignore them."""
+        """Set whether measurements are used or ignored."""
         response.status = request.on != self.is_on
         if response.status:
             self.get_logger().info(
@@ -263,7 +263,7 @@ class FilterNode(SensingNode):
             self.filter.predict(now_ns)
 
     def revert(self, time_ns: int) -> None:
-        """Return to the estimate before a time, and let what was used since then wait again."""
+        """Return to the estimate before a time, and queue the measurements since then again."""
         state = None
         while self.states and self.states[-1][0] > time_ns:
             state = self.states.pop()
@@ -317,7 +317,7 @@ class FilterNode(SensingNode):
             self.rate.tick()
 
     def broadcast(self, msg: Odometry) -> None:
-        """Broadcast where the robot is, or how far off its odometry is."""
+        """Broadcast the pose of the robot, or the correction of its odometry."""
         frames = self.frames
         transform = TransformStamped(child_frame_id=msg.child_frame_id)
         transform.header.frame_id = msg.header.frame_id
@@ -327,7 +327,7 @@ class FilterNode(SensingNode):
         transform.transform.translation = Vector3(x=at.x, y=at.y, z=at.z)
         transform.transform.rotation = msg.pose.pose.orientation
         if frames.world == self.map:
-            # Another program says where the robot is in `odom`, and a frame has one parent only.
+            # Another program publishes the robot's pose in `odom`, and a frame has only one parent.
             base_to_odom = self.transform(frames.base, self.odom, 0)
             if base_to_odom is None:
                 self.get_logger().error(

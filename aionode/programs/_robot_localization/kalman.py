@@ -38,7 +38,7 @@ NAMES: Final = (
     *("ROLL_VELOCITY", "PITCH_VELOCITY", "YAW_VELOCITY"),
     *("X_ACCELERATION", "Y_ACCELERATION", "Z_ACCELERATION"),
 )
-"""What the state consists of: the pose in the world, the rest in the frame of the robot."""
+"""The parts of the state: the pose in the world, the rest in the frame of the robot."""
 
 SIZE: Final = len(NAMES)
 POSITION: Final = slice(0, 3)
@@ -59,7 +59,7 @@ PROCESS_NOISE: Final = (
 
 START_VARIANCE: Final = 1e-9
 LEAST_VARIANCE: Final = 1e-9
-"""The least variance of a measurement: none is exact, and the gain needs an inverse matrix."""
+"""The minimum variance of a measurement: none is exact, and the gain needs an inverse matrix."""
 
 Mask = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.intp]
@@ -71,17 +71,18 @@ ABOUT_Z: Final = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 @dataclass
 class Control:
-    """What the robot was commanded, and how fast it follows.
+    """The command to the robot, and how fast the robot follows it.
 
     Attributes:
         mask: Which of the six velocities are commanded.
-        timeout_ns: How old a command may be; an older one counts as zero.
-        acceleration_limits: For each velocity, as the next three.
-        acceleration_gains: Acceleration for each unit of difference from the command.
-        deceleration_limits: For slowing down.
-        deceleration_gains: For slowing down.
+        timeout_ns: The maximum age of a command; an older one counts as zero.
+        acceleration_limits: The maximum acceleration of each velocity.
+        acceleration_gains: The acceleration of each velocity per unit of difference from the
+            command.
+        deceleration_limits: The limits for slowing down.
+        deceleration_gains: The gains for slowing down.
         twist: The command.
-        time_ns: When it came.
+        time_ns: When it arrived.
     """
 
     mask: Sequence[bool] = (False,) * 6
@@ -101,7 +102,7 @@ class Control:
             wanted = 0.0 if is_old else float(self.twist[index])
             actual = float(velocities[index])
             error = wanted - actual
-            # A command in the other direction is first a command to stop.
+            # A command in the opposite direction is first a command to stop.
             aim = wanted if abs(error) <= abs(wanted) + 0.01 else 0.0
             gain, limit = self.acceleration_gains[index], self.acceleration_limits[index]
             if abs(aim) < abs(actual):
@@ -112,17 +113,17 @@ class Control:
 
 @dataclass
 class Measurement:
-    """What a sensor says of the state.
+    """A measurement of parts of the state by a sensor.
 
     Attributes:
-        source: Its name, for diagnostics.
+        source: The name of the sensor, for diagnostics.
         time_ns: When it was measured.
-        values: The state; only those of `mask` count.
-        covariance: How sure it is.
-        mask: What was measured.
-        threshold: At how many standard deviations from the estimate it is rejected.
-        command: The velocities that were commanded then.
-        command_ns: When that was.
+        values: A whole state, of which only the values in `mask` count.
+        covariance: The covariance of the values.
+        mask: The values that were measured.
+        threshold: The number of standard deviations from the estimate at which it is rejected.
+        command: The velocities that were commanded at that time.
+        command_ns: When they were commanded.
     """
 
     source: str
@@ -147,12 +148,12 @@ class Filter(ABC):
 
     Attributes:
         state: The estimate.
-        covariance: How sure it is.
-        time_ns: For when it is.
+        covariance: Its covariance.
+        time_ns: The time of the estimate.
         is_initialized: Whether there was a measurement.
         process_noise: How fast `covariance` grows, per second.
         is_noise_dynamic: Whether the noise of the pose grows with the velocity.
-        control: What the robot was commanded.
+        control: The command to the robot.
     """
 
     def __init__(self) -> None:
@@ -200,7 +201,7 @@ class Filter(ABC):
         self.state, self.covariance = self.state.copy(), self.covariance.copy()
         try:
             is_used = self._correct(measured, measurement.values[measured], noise, measurement)
-        except np.linalg.LinAlgError:  # covariances that are none
+        except np.linalg.LinAlgError:  # a covariance is not positive definite
             is_used = False
         if is_used and np.isfinite(self.state).all() and np.isfinite(self.covariance).all():
             self.state[ORIENTATION] = wrapped(self.state[ORIENTATION])
@@ -209,7 +210,7 @@ class Filter(ABC):
         return False
 
     def _noise(self) -> Array:
-        """Return the process noise; of a robot that stands still the pose gets no less certain."""
+        """Return the process noise; if dynamic, the pose of a robot at rest stays as certain."""
         if not self.is_noise_dynamic:
             return self.process_noise
         noise = self.process_noise.copy()
@@ -217,7 +218,7 @@ class Filter(ABC):
         return noise
 
     def _controlled(self, state: Array, accelerations: Array, seconds: float) -> Array:
-        """Return a state with the accelerations that follow from the command."""
+        """Return a state with the accelerations due to the command."""
         result = state.copy()
         result[ANGULAR] += accelerations[3:] * seconds
         mask = np.array(self.control.mask[:3], dtype=bool)
@@ -236,7 +237,7 @@ class Filter(ABC):
 
 
 def is_near(innovation: Array, inverse: Any, threshold: float) -> bool:
-    """Return whether a measurement is within so many standard deviations of the estimate."""
+    """Return whether a measurement is within a number of standard deviations of the estimate."""
     return float(innovation @ inverse @ innovation) < threshold * threshold
 
 
@@ -253,14 +254,14 @@ def transfer(state: Array, seconds: float) -> Array:
 
 
 def angle_rates(roll: float, pitch: float) -> Array:
-    """Return the matrix by which angular velocities become changes of roll, pitch and yaw."""
+    """Return the matrix that turns angular velocities into the rates of roll, pitch and yaw."""
     sr, cr = math.sin(roll), math.cos(roll)
     tp, cpi = math.tan(pitch), 1.0 / math.cos(pitch)
     return np.array([[1.0, sr * tp, cr * tp], [0.0, cr, -sr], [0.0, sr * cpi, cr * cpi]])
 
 
 def jacobian(state: Array, seconds: float) -> Array:
-    """Return the derivative of the moved state by the state."""
+    """Return the derivative of the moved state with respect to the state."""
     roll, pitch, yaw = state[ORIENTATION]
     result = transfer(state, seconds)
     rotation = matrix_of(roll, pitch, yaw)
@@ -314,9 +315,9 @@ class Ukf(Filter):
     """The unscented filter: points around the estimate move, and their mean is the next one.
 
     Args:
-        alpha: How far the points are from the estimate.
-        kappa: The same, added to the number of variables.
-        beta: What is known of the distribution; 2 fits a normal one.
+        alpha: The spread of the points around the estimate.
+        kappa: A secondary spread, which is added to the number of variables.
+        beta: Prior knowledge of the distribution; 2 is optimal for a normal one.
 
     Raises:
         ValueError: There are no points around the estimate.
@@ -335,7 +336,7 @@ class Ukf(Filter):
         super().__init__()
 
     def around(self) -> Array:
-        """Return the points around the estimate, one a row."""
+        """Return the points around the estimate, one per row."""
         scaled = self.scale * (self.covariance + self.covariance.T) / 2
         try:
             root = np.linalg.cholesky(scaled)

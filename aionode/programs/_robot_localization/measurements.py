@@ -1,4 +1,4 @@
-"""From messages of sensors to measurements of the state, in the frames of the filter."""
+"""Turns messages of sensors into measurements of the state, in the frames of the filter."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Complain = Callable[[str, str], object]
 """Takes a key and a text for the diagnostics."""
 
 FLAT: Final = [2, 3, 4, 8, 9, 10, 14]
-"""What is zero of a robot that moves on a plane: height, roll, pitch, and how they change."""
+"""The values that are zero for a robot on a plane: height, roll, pitch, and their changes."""
 
 FLAT_VARIANCE: Final = 1e-6
 LARGE: Final = 1e3
@@ -50,9 +50,9 @@ class Sensor:
         name: The topic's parameter and the part, such as ``odom0_pose``.
         mask: Which values of the state it measures.
         is_differential: Whether the change of a pose counts as a velocity.
-        is_relative: Whether the first pose is where the robot starts.
+        is_relative: Whether poses are relative to the first one.
         has_own_frame: Whether the pose is that of the message's child frame.
-        threshold: At how many standard deviations from the estimate it is rejected.
+        threshold: The number of standard deviations from the estimate at which it is rejected.
         removes_gravity: Whether an acceleration includes gravity.
     """
 
@@ -73,13 +73,13 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Frames:
-    """The frames of the filter, and what holds in them.
+    """The frames of the filter, and the motion in them.
 
     Attributes:
-        world: Where poses are.
-        base: The robot, where velocities and accelerations are.
+        world: The frame of poses.
+        base: The frame of the robot, of its velocities and of its accelerations.
         is_flat: Whether the robot moves on a plane.
-        gravity: In m/s².
+        gravity: The acceleration of gravity, in m/s².
     """
 
     world: str
@@ -94,13 +94,13 @@ class Measuring:
 
     Attributes:
         frames: The frames of the filter.
-        filter: Whose estimate tells how the sensor moves.
+        filter: The filter, whose estimate says how a sensor moves.
         lookup: Finds transforms.
-        complain: Tells of messages that look wrong.
-        angular_acceleration: Of the robot, in its frame.
+        complain: Reports messages that look wrong.
+        angular_acceleration: The angular acceleration of the robot, in its frame.
         last_ns: The stamp of the last message of each sensor.
-        first: Its first pose, where a sensor is relative.
-        previous: Its last pose and covariance, where a sensor is differential.
+        first: The first pose of each relative sensor.
+        previous: The last pose and covariance of each differential sensor.
     """
 
     frames: Frames
@@ -118,7 +118,7 @@ class Measuring:
         self.previous.clear()
 
     def pose(self, sensor: Sensor, header: Any, given: Any, source: str) -> Measurement | None:
-        """Return what a pose with covariance measures; `source` is the frame that it is of."""
+        """Return the measurement of a pose with covariance, that of the frame `source`."""
         target = self.frames.world
         frame = target if sensor.is_differential else header.frame_id
         stamp_ns = nanoseconds(header.stamp)
@@ -136,9 +136,9 @@ class Measuring:
         )
 
     def orientation(self, sensor: Sensor, imu: Any) -> Measurement | None:
-        """Return what an IMU says of the orientation, which it reports in the world.
+        """Return an IMU's measurement of its orientation, which it reports in the world.
 
-        Its frame only tells how it is mounted: these angles are taken away, and roll and pitch are
+        Its frame only says how it is mounted: these angles are subtracted, and roll and pitch are
         turned by the angle about the vertical.
         """
         stamp_ns = nanoseconds(imu.header.stamp)
@@ -195,7 +195,7 @@ class Measuring:
         return self._measured(sensor, stamp_ns, POSE, values, turned_covariance, mask)
 
     def twist(self, sensor: Sensor, header: Any, given: Any, frame: str) -> Measurement | None:
-        """Return what a twist with covariance in a frame measures."""
+        """Return the measurement of a twist with covariance in a frame."""
         stamp_ns = nanoseconds(header.stamp)
         mounted = self.lookup(self.frames.base, frame, stamp_ns)
         if mounted is None:
@@ -214,7 +214,7 @@ class Measuring:
         return self._measured(sensor, stamp_ns, TWIST, values, covariance, mask)
 
     def acceleration(self, sensor: Sensor, imu: Any) -> Measurement | None:
-        """Return what an IMU says of the acceleration."""
+        """Return an IMU's measurement of the acceleration."""
         stamp_ns = nanoseconds(imu.header.stamp)
         frame = imu.header.frame_id or self.frames.base
         mounted = self.lookup(self.frames.base, frame, stamp_ns)
@@ -235,7 +235,7 @@ class Measuring:
         return self._measured(sensor, stamp_ns, ACCELERATION, values, covariance, mask)
 
     def _gravity(self, sensor: Sensor, imu: Any, mounted: Array) -> Array:
-        """Return what an IMU at rest measures."""
+        """Return the acceleration that an IMU at rest measures."""
         up = np.array([0.0, 0.0, self.frames.gravity])
         if is_unknown(imu.orientation_covariance):
             attitude = matrix_of(*self.filter.state[ORIENTATION]) @ mounted
@@ -247,7 +247,7 @@ class Measuring:
         return weight
 
     def _matrix(self, sensor: Sensor, pose: Any) -> Array:
-        """Return a pose as a matrix; of an IMU, which has no position, the orientation."""
+        """Return a pose as a matrix; for an IMU, which has no position, the orientation."""
         turn = pose.orientation
         if sensor.mask[ORIENTATION].any() and not (turn.x or turn.y or turn.z or turn.w):
             self.complain(
@@ -262,7 +262,7 @@ class Measuring:
         return result
 
     def _covariance(self, sensor: Sensor, given: Any, part: slice) -> Array:
-        """Return a covariance as a matrix, and tell what is wrong with it."""
+        """Return a covariance as a matrix, and report what is wrong with it."""
         size = part.stop - part.start
         covariance = np.array(given, dtype=float).reshape(size, size)
         for index in np.flatnonzero(sensor.mask[part]):
@@ -311,12 +311,12 @@ class Measuring:
 
 
 def is_unknown(covariance: Any) -> bool:
-    """Return whether an IMU does not measure what a covariance is for: it begins with -1."""
+    """Return whether an IMU lacks the measurement of a covariance, which then begins with -1."""
     return abs(float(covariance[0]) + 1.0) < 1e-9
 
 
 def seen(rotation: Array, mask: Mask) -> Mask:
-    """Return which axes of a turned frame are measured, if these are of the sensor's frame."""
+    """Return which axes of a turned frame are measured, given those of the sensor's frame."""
     result: Mask = np.linalg.norm(rotation * mask, axis=1) >= VISIBLE
     return result
 

@@ -50,7 +50,7 @@ MAX_QUEUED: Final = 2000
 
 
 class SensingNode(SettingsNode):
-    """Subscribes to the sensors, and lets their measurements wait for the next update."""
+    """Subscribes to the sensors, and queues their measurements for the next update."""
 
     def __init__(self, name: str, make_filter: Callable[[Node], Filter]) -> None:
         super().__init__(name, make_filter)
@@ -107,7 +107,7 @@ class SensingNode(SettingsNode):
         return Sensor(name, mask, is_differential, is_relative, **more)
 
     def threshold(self, name: str) -> float:
-        """Return the parameter from where on measurements are rejected."""
+        """Return the threshold for rejecting measurements, which a parameter sets."""
         value: float = self.given(f"{name}_rejection_threshold", math.inf)
         return value
 
@@ -207,7 +207,7 @@ class SensingNode(SettingsNode):
         self.listen(Imu, name, topic, [pose, twist, push], use)
 
     def leave_to_imu(self, sensor: Sensor) -> None:
-        """Use no commands for accelerations that are measured."""
+        """Stop using commands for accelerations that are measured."""
         mask = list(self.filter.control.mask)
         for index, axis in enumerate("XYZ"):
             if mask[index] and sensor.mask[12 + index]:
@@ -219,7 +219,7 @@ class SensingNode(SettingsNode):
         self.filter.control.mask = mask
 
     def check_measured(self) -> None:
-        """Tell of values that several sensors measure, or none."""
+        """Report values that several sensors measure, or none."""
         for index, name in enumerate(NAMES[:6]):
             if self.measured[name] > 1:
                 self.tell_for_good(
@@ -239,7 +239,7 @@ class SensingNode(SettingsNode):
                 )
 
     def use(self, sensor: Sensor, msg: Any, measure: Callable[[], Measurement | None]) -> None:
-        """Let a part of a message wait for the next update, unless it is too old."""
+        """Queue a part of a message for the next update, unless it is too old."""
         if not sensor.mask.any():
             return
         stamp_ns = nanoseconds(msg.header.stamp)
@@ -268,8 +268,8 @@ class SensingNode(SettingsNode):
         if len(self.queue) >= MAX_QUEUED:
             self.tell(
                 f"{sensor.name}_timestamp",
-                f"More than {MAX_QUEUED} measurements wait for their time, so that of "
-                f"{sensor.name} is ignored. Are the clocks of all computers the same?",
+                f"More than {MAX_QUEUED} measurements wait for their time, so the one of "
+                f"{sensor.name} is ignored. Are the clocks of all computers synchronized?",
             )
             return
         measurement.command = self.filter.control.twist
@@ -277,18 +277,18 @@ class SensingNode(SettingsNode):
         self.put(measurement)
 
     def put(self, measurement: Measurement) -> None:
-        """Let a measurement wait for the next update."""
+        """Queue a measurement for the next update."""
         heapq.heappush(self.queue, (measurement.time_ns, next(self.numbers), measurement))
 
     def on_command(self, msg: Twist) -> None:
-        """Note what the robot is commanded."""
+        """Keep the command to the robot."""
         linear, angular = msg.linear, msg.angular
         twist = np.array([linear.x, linear.y, linear.z, angular.x, angular.y, angular.z])
         if np.isfinite(twist).all():
             self.filter.control.twist, self.filter.control.time_ns = twist, self.now_ns()
 
     def transform(self, target: str, source: str, time_ns: int) -> Array | None:
-        """Return the matrix from a frame to another: at a time, or else the latest."""
+        """Return the matrix from one frame to another: at a time, or else the latest."""
         if target == source:
             return np.eye(4)
         for time in (Time(nanoseconds=max(0, time_ns)), Time()):
@@ -316,4 +316,4 @@ class SensingNode(SettingsNode):
                         target, source, stamp, timeout_sec=self.tf_timeout_sec
                     )
                 except TransformException:
-                    continue  # the latest one has to do
+                    continue  # the latest one is used

@@ -21,7 +21,7 @@ OK: Final = DiagnosticStatus.OK
 
 
 class SettingsNode(Node):
-    """Reads the parameters, and keeps what the diagnostics say.
+    """Reads the parameters, and keeps the texts of the diagnostics.
 
     Args:
         name: The name of the node.
@@ -84,7 +84,7 @@ class SettingsNode(Node):
         self.frames = Frames(world, base, is_flat, gravity)
 
     def declare_behaviour(self) -> None:
-        """Read what is done when."""
+        """Read the parameters of timing."""
         self.publishes_tf = self.given("publish_tf", value=True)
         self.publishes_acceleration = self.given("publish_acceleration", value=False)
         self.publishes_corrections = self.given("permit_corrected_publication", value=False)
@@ -111,10 +111,10 @@ class SettingsNode(Node):
         self.resets_on_jump = self.given("reset_on_time_jump", value=False)
         self.is_enabled = not self.given("disabled_at_startup", value=False)
         if self.given("debug", value=False):
-            self.get_logger().warning("debug: there is no file with debug output here")
+            self.get_logger().warning("debug: aionode writes no file with debug output")
 
     def declare_control(self) -> None:
-        """Read how the robot follows its commands."""
+        """Read the parameters of how the robot follows its commands."""
         is_used = self.given("use_control", value=False)
         timeout_ns = round(self.given("control_timeout", 0.0) * 1e9)
         if not is_used:
@@ -148,7 +148,7 @@ class SettingsNode(Node):
         return list(values)
 
     def declare_estimate(self) -> None:
-        """Read what the filter begins with, and how fast it becomes less certain."""
+        """Read the initial state of the filter, its covariance and the process noise."""
         self.filter.is_noise_dynamic = self.given("dynamic_process_noise_covariance", value=False)
         state = self.optional("initial_state", Parameter.Type.DOUBLE_ARRAY)
         if state is not None and len(state) != SIZE:

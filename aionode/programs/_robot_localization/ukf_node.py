@@ -12,7 +12,7 @@ __all__ = ["UkfNode", "main"]
 
 
 class UkfNode(FilterNode):
-    """Estimates with a filter that moves points around the estimate."""
+    """Estimates with a filter that moves sample points around the estimate."""
 
     def __init__(self) -> None:
         super().__init__("ukf_filter_node", filter_of)
@@ -22,7 +22,7 @@ def filter_of(node: Node) -> Ukf:
     """Return the filter, with the parameters of a node.
 
     Raises:
-        CommandError: They leave no points around the estimate.
+        CommandError: The parameters leave no sample points around the estimate.
     """
     alpha, kappa, beta = (
         node.declare_parameter(name, default).value

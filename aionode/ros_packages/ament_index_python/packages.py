@@ -52,8 +52,8 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     """Return the folder with the data of a package, with a warning if it does not exist.
 
     For a package of the workspace, which needs no build, this is its source folder, or a folder of
-    links if its rules install files elsewhere; for one of ROS that is not there it is what aionode
-    has of it.
+    links if its rules install files elsewhere. For a package of ROS that is not installed, it is
+    the folder that aionode has in its place.
     """
     below = Path("share", package_name)
     path = looked_up(package_name, checked(package_name).share, below)
@@ -79,7 +79,7 @@ def checked(package_name: str) -> Packages:
 
 
 def looked_up(package_name: str, look_up: Callable[[str], Path], below: Path = Path()) -> Path:
-    """Return a folder of a package, or its stand-in, in which it would be below the prefix."""
+    """Return a folder of a package, or the one `below` the prefix of its stand-in."""
     try:
         return look_up(package_name)
     except errors.PackageNotFoundError as error:

@@ -46,7 +46,7 @@ class DiagnosticStatusWrapper(diagnostics.StatusMethods, DiagnosticStatus):  # t
 
 
 class Updater(diagnostics.UpdaterBase):
-    """Calls tasks again and again, and publishes the status that each of them fills.
+    """Calls tasks periodically, and publishes the status that each of them fills.
 
     Args:
         node: The node.
@@ -79,7 +79,7 @@ class Updater(diagnostics.UpdaterBase):
                 status = self._begun(task)
                 try:
                     filled = task.run(status)
-                except Exception as error:  # noqa: BLE001  # of the program's task: told and logged
+                except Exception as error:  # noqa: BLE001  # the program's task: reported and logged
                     filled = self._failed(task, error)
                 statuses.append(status if filled is None else filled)
         self._finish(statuses)

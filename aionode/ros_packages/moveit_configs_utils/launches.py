@@ -191,11 +191,11 @@ def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescriptio
 def generate_demo_launch(
     moveit_config: MoveItConfigs, launch_package_path: Path | None = None
 ) -> LaunchDescription:
-    """Return the description of a robot of which no hardware is needed.
+    """Return the description of a demo that needs no hardware.
 
     Args:
         moveit_config: Its parameters.
-        launch_package_path: The package with the other launch files, if that is another one.
+        launch_package_path: The package with the other launch files, if they are elsewhere.
     """
     folder = (launch_package_path or package_of(moveit_config)) / "launch"
 

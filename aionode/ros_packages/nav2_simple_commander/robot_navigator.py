@@ -237,7 +237,7 @@ class BasicNavigator(Node):
             rclpy.spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
 
     def isTaskComplete(self) -> bool:
-        """Wait for 0.1 s, and return whether the task has ended; also without one."""
+        """Wait for 0.1 s, and return whether the task has ended; True without a task."""
         if not self.result_future:
             return True
         rclpy.spin_until_future_complete(self, self.result_future, timeout_sec=POLL_SEC)

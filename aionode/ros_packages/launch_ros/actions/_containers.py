@@ -67,8 +67,8 @@ class ComposableNodeContainer(Node):
         """Record the nodes that need the container, which does not exist.
 
         Raises:
-            PackageNotFoundError: Nothing may be left out. It names the package of such a node, if
-                that tells more, otherwise the container's.
+            PackageNotFoundError: Nothing may be left out. It names the package of such a node if
+                that says more, and otherwise the container's.
         """
         foreign = [each for each in components if not each.is_aionode]
         known = [each.package for each in foreign if remark_on(each.package)]
