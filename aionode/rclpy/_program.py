@@ -62,6 +62,7 @@ def main(argv: Sequence[str]) -> None:
     """
     folders, is_module, name, arguments = parsed(argv)
     # not loaded for the usage text
+    from aionode.rclpy._children import let_children_import
     from aionode.rclpy._defects import prepare
     from aionode.rclpy._finder import install, shared_errors_take_names
 
@@ -75,6 +76,7 @@ def main(argv: Sequence[str]) -> None:
     if name == CHECK:
         list_imports(arguments)
     sys.path[:1] = folders["--path"] or sys.path[:1]
+    let_children_import(folders["--interfaces"])
     shared_errors_take_names()
     prepare(name)
     sys.excepthook = report
