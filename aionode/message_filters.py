@@ -346,7 +346,7 @@ class Chain(SimpleFilter):
         """
         if not 0 <= index < len(self.__filters):
             raise KeyError(
-                f"the chain has {len(self.__filters)} filters, and none of index {index}"
+                f"the chain has {len(self.__filters)} filters, but none of index {index}"
             )
         return self.__filters[index]
 

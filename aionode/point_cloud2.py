@@ -163,7 +163,7 @@ def read_points(
     keep_rows = reshape_organized_cloud and cloud.height > 1
     if keep_rows and (skip_nans or uvs is not None):
         raise ValueError(
-            "read_points: reshape_organized_cloud keeps every point, and skip_nans and uvs leave "
+            "read_points: reshape_organized_cloud keeps every point, but skip_nans and uvs leave "
             "some out; use one of them"
         )
     if not keep_rows:

@@ -70,7 +70,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         UPDATE,
         action="store_true",
-        help="aionode: record what nodes publish now as what golden_bag expects",
+        help="aionode: record what nodes publish, as the new expectation of golden_bag",
     )
 
 

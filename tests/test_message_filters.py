@@ -306,7 +306,7 @@ def test_a_filter_that_is_not_in_the_chain_is_a_key_error() -> None:
     chain.addFilter(cache)
 
     assert chain.getFilter(0) is cache
-    with pytest.raises(KeyError, match="has 1 filters, and none of index 1"):
+    with pytest.raises(KeyError, match="has 1 filters, but none of index 1"):
         chain.getFilter(1)
 
 

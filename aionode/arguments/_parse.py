@@ -44,8 +44,8 @@ class Arguments(Struct, frozen=True):
     """The parsed arguments.
 
     Attributes:
-        remap_rules: In order; the first match wins.
-        parameter_rules: From files and ``-p``, in order; the last match wins.
+        remap_rules: The remapping rules, in order; the first match wins.
+        parameter_rules: The rules from files and ``-p``, in order; the last match wins.
         params_files: Paths of the files that were read.
         log_level: The level of loggers that have none of their own.
         log_levels: Levels of individual loggers.

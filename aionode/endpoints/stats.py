@@ -308,7 +308,7 @@ class ClientStats:
     Attributes:
         calls: How many calls were sent.
         errors: How many ended with a `ServiceError` or without a reply.
-        run_time: From a call to its response.
+        run_time: The time from a call to its response.
     """
 
     __slots__ = ("calls", "errors", "run_time")

@@ -51,9 +51,9 @@ class CauseQuestion(msgspec.Struct, array_like=True):
     """The question of a tool.
 
     Attributes:
-        name: For the latest item sent with this name, of a topic, service, action, node or goal.
-        keys: For the entries with these keys.
-        since: For all runs and entries from these numbers on; None for none.
+        name: The topic, service, action, node or goal whose latest sent item to get.
+        keys: The keys of entries to get.
+        since: The numbers from which to get all runs and entries; None for none.
     """
 
     name: str = ""

@@ -207,7 +207,7 @@ class Context:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
         if not 0 <= spin_us < math.inf:
-            raise ValueError(f"Context: spin_us={spin_us} is not 0 or more microseconds")
+            raise ValueError(f"Context: spin_us={spin_us}; use 0 or more microseconds")
         self._spin_ns = int(spin_us * 1e3)
         self._stop_spinning: Callable[[], None] | None = None
         self.ros_distro = choose_distribution(os.environ, ros_distro)

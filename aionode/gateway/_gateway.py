@@ -62,7 +62,7 @@ class Gateway:
             calls of the services of the player's node.
         mcp: Whether clients of MCP, such as those of language models, are served at ``/mcp``; it
             needs the extra ``mcp``.
-        about: With `mcp`, what models are told of this robot.
+        about: With `mcp`, a description of this robot for models.
         bags: With `mcp`, a folder of recordings of which models get summaries; empty for none.
 
     Raises:

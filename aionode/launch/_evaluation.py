@@ -87,7 +87,7 @@ def description_of_text(path: str, text: bytes | None, endings: Iterable[str]) -
     Args:
         path: The file, or a name for what was read.
         text: Its text; read from the file if not given.
-        endings: Those of the languages that it may be in; one of them, if there is only one.
+        endings: The endings of the languages that it may be in; one, if there is only one.
 
     Raises:
         LaunchFileError: There is no such file, or it is not a launch file of these languages.

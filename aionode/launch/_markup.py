@@ -55,7 +55,7 @@ def read_xml(path: str, text: bytes) -> Element:
 
     def refuse(*_: object) -> None:
         raise LaunchFileError(
-            path, "a document type (<!DOCTYPE>) is not read", line=parser.CurrentLineNumber
+            path, "a document type (<!DOCTYPE>) is not supported", line=parser.CurrentLineNumber
         )
 
     def end(_: str) -> None:

@@ -39,7 +39,7 @@ class ActionPlan:
         period_ns: The time between two actions of a chunk.
         lower: The lower limit of each number of an action.
         upper: The upper limits.
-        blend_ns: For how long a new chunk is blended with the rest of the last one.
+        blend_ns: How long a new chunk is blended with the rest of the last one.
 
     Attributes:
         sent: Actions taken, in time.

@@ -255,7 +255,7 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
         Args:
             node: The node whose publishers and clock are used.
-            blend_sec: For how long a new chunk is blended with the rest of the last one, from
+            blend_sec: How long a new chunk is blended with the rest of the last one, from
                 entirely the old to entirely the new.
 
         Raises:
@@ -371,7 +371,7 @@ def check_keys(path: str, node: Any) -> None:
             if name in seen:
                 line = key.start_mark.line + 1
                 shown = escaped(name[:100], one_line=True)
-                raise ContractError(path, f"line {line}: {shown}", "there twice; remove one")
+                raise ContractError(path, f"line {line}: {shown}", "given twice; remove one")
             seen.add(name)
             check_keys(path, value)
     elif isinstance(node, yaml.SequenceNode):

@@ -258,7 +258,7 @@ def settle_entities(
 
     Args:
         entities: All entities of the node.
-        enabled: Those that were enabled before the transition.
+        enabled: The entities that were enabled before the transition.
         start: The state in which the transition started.
         is_active: Whether the node is active now.
     """

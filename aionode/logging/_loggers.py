@@ -237,7 +237,7 @@ def set_logger_level_for_others(name: str, level: int) -> None:
     is_full = len(logging.Logger.manager.loggerDict) >= MOST_LOGGERS
     if name and known_logger(name) is None and (is_full or len(name) > LONGEST_NAME):
         raise ValueError(
-            f"there is no logger {brief(name)}; other nodes can have one made with a name of "
+            f"there is no logger {brief(name)}; other nodes can create one with a name of "
             f"{LONGEST_NAME} characters at most, and while there are fewer than {MOST_LOGGERS}"
         )
     set_logger_level(name, level)

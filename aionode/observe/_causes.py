@@ -189,7 +189,7 @@ class Findings:
         now_ns: The moment from which ages count back.
         senders: The endpoints of the graph, by gid.
         named: The nodes of each context.
-        offsets: From the clock of each context to that of `now_ns`.
+        offsets: The offset from the clock of each context to that of `now_ns`.
     """
 
     def __init__(self, name: str, now_ns: int) -> None:

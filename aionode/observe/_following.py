@@ -39,7 +39,7 @@ class Following:
 
     Attributes:
         told: The latest answer of each context that keeps causes, without its runs and entries.
-        offsets: From the clock of each context to this one, in nanoseconds.
+        offsets: The offset from the clock of each context to this one, in nanoseconds.
         lost: How many callbacks and sent items were no longer kept when asked for.
         not_kept: Contexts that keep no causes, each with the names of its nodes.
         silent: Contexts that did not answer the last time, in the same form.

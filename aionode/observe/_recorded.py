@@ -45,7 +45,7 @@ class CauseRecord(msgspec.Struct):
         now_ns: The time of the answer, by the steady clock of the recorder.
         time_ns: The same, by the clock of the recorder's node, as in the recording.
         report: The answer of a context, without its runs.
-        offset_ns: From the clock of that context to the recorder's.
+        offset_ns: The offset from the clock of that context to the recorder's.
         named: The nodes of each context.
         senders: The endpoints of the graph.
         silent: The contexts that did not answer.

@@ -20,9 +20,9 @@ class ParameterCallbacks:
     """A node's callbacks for parameter changes; the newest of each kind runs first.
 
     Attributes:
-        pre: Those that run before a change is checked.
-        on: Those that check it.
-        post: Those that run after it.
+        pre: The callbacks that run before a change is checked.
+        on: The callbacks that check it.
+        post: The callbacks that run after it.
     """
 
     def __init__(self) -> None:

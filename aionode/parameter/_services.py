@@ -227,7 +227,7 @@ def each_once(names: Sequence[str], read: Callable[[Any], list[Any]]) -> dict[st
     unique = list(dict.fromkeys(names))
     if len(unique) < len(names) and len(names) > MOST_REPEATED:
         raise RequestRefusedError(
-            f"the request has {len(names)} names, and only {len(unique)} different ones; ask for "
+            f"the request has {len(names)} names, but only {len(unique)} different ones; ask for "
             f"each once, or for at most {MOST_REPEATED}"
         )
     return dict(zip(unique, read(unique), strict=True))

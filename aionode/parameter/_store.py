@@ -72,7 +72,7 @@ class ParameterStore:
     Attributes:
         overrides: The overrides, by name.
         asked: Names of the overrides whose parameters have been declared.
-        publish: As given; may be replaced.
+        publish: The function for events, which may be replaced.
         callbacks: The callbacks for changes.
         parameter_class: The class of the parameters.
         messages: The message classes, by name; on-set callbacks return its `SetParametersResult`.

@@ -71,8 +71,8 @@ class Keys:
     """The command set by the keys.
 
     Args:
-        speed: In m/s.
-        turn: In rad/s.
+        speed: The linear speed, in m/s.
+        turn: The angular speed, in rad/s.
     """
 
     def __init__(self, speed: float = 0.5, turn: float = 1.0) -> None:

@@ -26,7 +26,7 @@ class Source:
         name: Its name in the parameters.
         topic: The topic.
         timeout: How long a message is valid, in seconds; 0 means forever.
-        priority: From 0 to 255.
+        priority: Its priority, from 0 to 255.
         now: Returns the time in nanoseconds.
     """
 

@@ -94,7 +94,7 @@ class Robot:
         if is_lfs_pointer(text.encode(errors="replace")):
             raise ValueError(f"it is {LFS_POINTER}")
         if len(text) > MAX_BYTES:
-            raise ValueError(f"it has {len(text)} characters; {MAX_BYTES} at most")
+            raise ValueError(f"it has {len(text)} characters; at most {MAX_BYTES} are allowed")
         if "<!ENTITY" in text:
             raise ValueError("it defines entities, which can grow without end")
         try:
@@ -102,7 +102,7 @@ class Robot:
         except ET.ParseError as error:
             raise ValueError(f"it is not XML: {error}") from None
         if root.tag != "robot":
-            raise ValueError(f"its root is <{root.tag}>, and should be <robot>")
+            raise ValueError(f"its root is <{root.tag}>, not <robot>")
         links = [named(link) for link in root.findall("link")]
         if not links:
             raise ValueError("it has no links")

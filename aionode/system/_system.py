@@ -333,7 +333,7 @@ class System:
         for member in reversed(self._members.values()):
             await member.stop()
         if not await self.guard.close():
-            self.log.note("processes are left that could not be ended: they run as another user")
+            self.log.note("some processes could not be ended, as they run as another user")
         self.reader.close()
         self._control.close()
         if self.first_failure is not None:

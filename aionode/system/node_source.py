@@ -39,8 +39,8 @@ def makers_of(specs: Sequence[str]) -> list[Callable[[], Any]]:
             makers.append(maker)
         elif len(specs) > 1:
             raise CommandError(
-                f"{spec}: it has run its nodes itself, and no others beside them; for nodes of "
-                "several files in one process, let it run them only `if __name__ == "
+                f"{spec}: it has run its nodes itself, so no others can run beside them; for nodes "
+                "of several files in one process, let it run them only `if __name__ == "
                 '"__main__":`'
             )
     return makers

@@ -93,8 +93,8 @@ class SteppedLoop:
             await asyncio.wait([running], timeout=SLOW_THREAD_S)
         if not running.done():
             get_logger("aionode.testing").warning(
-                f"{name} runs in a thread for {SLOW_THREAD_S:g} s already, and time stands still "
-                "until it returns; if it waits for messages, wait for them in the event loop"
+                f"{name} has been running in a thread for {SLOW_THREAD_S:g} s, and time stands "
+                "still until it returns; if it waits for messages, wait for them in the event loop"
             )
             await asyncio.wait([running])
 

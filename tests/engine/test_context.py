@@ -300,7 +300,7 @@ def test_a_loop_that_cannot_spin_says_so() -> None:
 
 def test_how_long_to_spin_is_a_number_of_microseconds() -> None:
     """An invalid value is reported when the context is created, not when it opens."""
-    with pytest.raises(ValueError, match="spin_us=-1 is not 0 or more microseconds"):
+    with pytest.raises(ValueError, match="spin_us=-1; use 0 or more microseconds"):
         Context(transport="local", spin_us=-1)
     with pytest.raises(TypeError, match="spin_us=True is not a number of microseconds"):
         Context(transport="local", spin_us=True)

@@ -86,7 +86,7 @@ def test_a_contract_survives_its_plain_values(tmp_path: Path) -> None:
         ("max_age: 0.05", "max_aeg: 0.05", "line 10: observations[0].max_aeg: no such key; did"),
         ("max_age: 0.05", "max_age: old", "line 10: observations[0].max_age: Expected `float`"),
         ("max_age: 0.05", "max_age: .nan", "line 10: observations[0].max_age: nan; use a number"),
-        ("fps: 30", "fps: 30\nfps: 20", "line 3: fps: there twice"),
+        ("fps: 30", "fps: 30\nfps: 20", "line 3: fps: given twice"),
         ("fps: 30", "fps: 0", "line 2: fps: 0; use 1 to 1000"),
         ("fps: 30", "fps: 30\nreference: /camera/image", "did you mean /camera/image_raw?"),
         ("fps: 30", "fbs: 30", "line 2: fbs: no such key; did you mean fps?"),

@@ -324,7 +324,7 @@ def test_two_numbers_of_one_name_are_refused(plugin: Any) -> None:
         "names": ["shoulder.pos"],
     }
     contract = Contract.from_dict({**CONTRACT, "observations": [*CONTRACT["observations"], twice]})
-    with pytest.raises(ValueError, match=r"shoulder.pos is there twice"):
+    with pytest.raises(ValueError, match=r"shoulder.pos occurs twice"):
         keys.observation_keys(contract)
 
 

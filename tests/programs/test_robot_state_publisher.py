@@ -209,7 +209,7 @@ async def test_a_robot_without_a_description_does_not_start(aionode_context: Con
 @pytest.mark.parametrize(
     ("urdf", "text"),
     [
-        ("<sdf/>", "its root is <sdf>, and should be <robot>"),
+        ("<sdf/>", "its root is <sdf>, not <robot>"),
         ("<robot>", "it is not XML"),
         ('<!DOCTYPE r [<!ENTITY a "b">]><robot/>', "entities"),
         (ARM.replace('link="base"', 'link="nowhere"', 1), "names link 'nowhere'"),

@@ -130,7 +130,7 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
             raise
         raise BagError(
             str(path),
-            f"{gettempdir()} has not enough space for the decompressed file",
+            f"{gettempdir()} does not have enough space for the decompressed file",
             "decompress it with `zstd -d` where there is space, or set TMPDIR",
         ) from error
     return plain, stack.enter_context(plain.open("rb"))

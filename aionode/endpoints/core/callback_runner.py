@@ -129,7 +129,7 @@ class CallbackRunner:
             )
         if offload and inspect.iscoroutinefunction(callback):
             raise ValueError(
-                f"{self.subject}: offload=True runs a sync callback in a thread, and this one "
+                f"{self.subject}: offload=True runs a sync callback in a thread, but this one "
                 "is a coroutine function; use `await asyncio.to_thread(...)` inside it"
             )
         self.stats = stats

@@ -18,7 +18,7 @@ class InlineCall:
     Anything left over, an exception or something to await, goes to that task through `after`.
 
     Attributes:
-        context: That of the task, to call `run` in; set by `prepare`.
+        context: The context of the task, to call `run` in; set by `prepare`.
     """
 
     __slots__ = ("_error", "_rest", "context")

@@ -74,7 +74,7 @@ class NodeCore:
         info: The node's entry in the graph.
         own_arguments: The arguments in `cli_args`.
         shared_arguments: The context's arguments, or none.
-        uses_global_arguments: As given.
+        uses_global_arguments: Whether the context's arguments apply.
         usages: Which of these arguments had an effect.
         parameters: The parameters.
         clock: The clock of the node.

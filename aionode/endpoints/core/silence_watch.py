@@ -97,14 +97,14 @@ class Silence(Struct, frozen=True):
         if on_silence is None:
             if silence_sec != SILENCE_SEC or clock is not None:
                 raise TypeError(
-                    f"{subject}: silence_sec and clock say when on_silence is called, and there is "
+                    f"{subject}: silence_sec and clock say when on_silence is called, but there is "
                     "no on_silence; give a function without parameters"
                 )
             return None
         accepts(on_silence, 0, subject=f"{subject}, on_silence", wanted="()")
         if not has_callback:
             raise TypeError(
-                f"{subject}: on_silence stops what the callback drives, and there is no callback; "
+                f"{subject}: on_silence stops what the callback drives, but there is no callback; "
                 "give one, or limit the wait: asyncio.timeout around receive()"
             )
         if clock is not None and not isinstance(clock, Clock):

@@ -51,7 +51,7 @@ class GoalStore(dict[bytes, Any]):
         goal_class: The aionode class with the messages' fields; by default their own class.
 
     Attributes:
-        kept_ns: As given.
+        kept_ns: How long to keep goals after their end.
     """
 
     def __init__(

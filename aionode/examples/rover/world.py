@@ -78,8 +78,8 @@ class World:
         """Drive for a while, and return the distance; the wheels slip if something is in the way.
 
         Args:
-            speed: In metres a second.
-            turn: In radians a second.
+            speed: The speed, in metres a second.
+            turn: The angular velocity, in radians a second.
             seconds: How long.
         """
         steps = max(1, math.ceil(abs(speed) * seconds / LONGEST_STEP))

@@ -28,7 +28,7 @@ class Portions:
             returned False, `go_on` has to be called as soon as it can.
 
     Attributes:
-        owed_sec: For how long nothing more is passed on, in seconds; set by `take`.
+        owed_sec: How long nothing more is passed on, in seconds; set by `take`.
     """
 
     def __init__(

@@ -42,7 +42,7 @@ class Arrivals:
     sent after the ping.
 
     Args:
-        robot: Has the clock, and notices that the gateway stood still.
+        robot: The robot, whose clock is used, and which notices standstills of the gateway.
         rights: Records what is refused.
 
     Attributes:

@@ -86,7 +86,7 @@ class Audit:
         Args:
             identity: Who.
             action: What it did, such as ``call``.
-            name: With which topic, service, action or parameter.
+            name: The topic, service, action or parameter.
             arguments: What it sent, which is shortened.
             result: ``ok``, or why it was refused or failed.
             duration_ns: How long it took, in nanoseconds.

@@ -50,7 +50,7 @@ class GraphView:
     """The graph without the names that the policy hides from a client.
 
     Args:
-        robot: Has the graph.
+        robot: The robot, which has the graph.
         rights: What the client may see.
     """
 

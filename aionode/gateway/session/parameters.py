@@ -37,7 +37,7 @@ class NodeParameters:
     """Reads and sets parameters of nodes, as far as the policy permits.
 
     Args:
-        robot: Has the node that asks.
+        robot: The robot, whose node asks.
         rights: What the client may do.
         arrivals: The arrival times of frames.
         graph: The nodes that the client may see.

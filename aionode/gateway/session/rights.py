@@ -25,7 +25,7 @@ class Rights:
     """Asks the policy about one client, and records refusals.
 
     Args:
-        robot: Has the policy, the audit log, and the counts of what is refused.
+        robot: The robot, which has the policy, the audit log, and the counts of refusals.
         identity: Who the client is.
         kind: The protocol, for the audit log.
 
@@ -156,9 +156,9 @@ class Rights:
 
         Args:
             verb: What the client does.
-            name: With what.
+            name: The name that it uses.
             what: What is limited.
-            held: Those that are made.
+            held: The ones that exist.
             most: The limit.
 
         Raises:

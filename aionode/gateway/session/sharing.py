@@ -23,8 +23,8 @@ class Shared:
     """Endpoints by their keys: name, type and profile.
 
     Args:
-        time_base: Measures how long an unused endpoint stays.
-        linger_ns: That time, in nanoseconds.
+        time_base: Measures time.
+        linger_ns: How long an unused endpoint stays, in nanoseconds.
     """
 
     def __init__(self, time_base: TimeBase, linger_ns: int = LINGER_NS) -> None:

@@ -51,7 +51,7 @@ class Analyzer(Protocol):
 
     Attributes:
         path: The name of its own state.
-        name: The same for users.
+        name: Its name for users.
     """
 
     path: str
@@ -81,7 +81,7 @@ class Items:
 
     Attributes:
         path: The name of its own state.
-        name: The same for users.
+        name: Its name for users.
         now: Returns the time, in seconds.
         timeout: The time without news after which a part is stale; 0 for never.
         expected: The required number of parts; below 0, any number.
@@ -277,7 +277,7 @@ class Group:
 
     Attributes:
         path: The name of its own state; none if it is empty.
-        name: The same for users.
+        name: Its name for users.
         analyzers: The analyzers in it.
         failed: The analyzers that could not be created, by name, with the reason.
     """

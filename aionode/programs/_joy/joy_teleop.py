@@ -45,7 +45,7 @@ def interface(name: Any, kind: str) -> Any:
     try:
         return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), short)
     except (ImportError, AttributeError, AionodeError) as error:
-        raise CommandError(f"type '{name}' is not here: {error}") from None
+        raise CommandError(f"type '{name}' is not available: {error}") from None
 
 
 def needed(config: Mapping[str, Any], key: str, command: str) -> Any:
@@ -96,7 +96,7 @@ class Command:
     Args:
         name: Its name in the parameters.
         config: Its parameters.
-        prefix: That of the parameters with the buttons and axes.
+        prefix: The prefix of the parameters with the buttons and axes.
 
     Raises:
         CommandError: There are none.

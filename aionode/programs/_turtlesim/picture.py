@@ -44,7 +44,7 @@ class Pen:
 
     Attributes:
         color: Red, green and blue.
-        width: In pixels.
+        width: The width of its line, in pixels.
     """
 
     color: tuple[int, int, int] = (0xB3, 0xB8, 0xFF)

@@ -17,8 +17,8 @@ def array_over(
 
     Args:
         data: The field of the message.
-        shape: Of the array.
-        dtype: Of the array.
+        shape: The shape of the array.
+        dtype: The type of the array.
         strides: The distance between elements in bytes, in each dimension; not negative.
 
     Raises:

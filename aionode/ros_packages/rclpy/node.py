@@ -601,9 +601,9 @@ class Node(ParameterMethods, GraphQueries):
 
         Args:
             entity: The entity.
-            entities: Those of its kind.
-            arrivals: Those of its kind, as something may wait for it already; None for kinds for
-                which nothing arrives.
+            entities: The entities of its kind.
+            arrivals: The arrivals of its kind, as something may already wait for it; None for kinds
+                for which nothing arrives.
         """
         entity.callback_group.add_entity(entity)
         entities.append(entity)

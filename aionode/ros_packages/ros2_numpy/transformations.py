@@ -40,7 +40,7 @@ def angle_between_vectors(
 
     Args:
         v0: Vectors.
-        v1: As many others.
+        v1: The same number of other vectors.
         directed: Whether opposite vectors are half a turn apart, rather than the same line.
         axis: The axis of their components.
     """

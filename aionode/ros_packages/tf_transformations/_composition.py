@@ -70,8 +70,8 @@ def orthogonalization_matrix(lengths: npt.ArrayLike, angles: npt.ArrayLike) -> A
     """Return the matrix from the coordinates of a crystal's cell to orthogonal ones.
 
     Args:
-        lengths: Of the sides of the cell.
-        angles: Between the sides, in degrees.
+        lengths: The lengths of the cell's sides.
+        angles: The angles between the sides, in degrees.
     """
     a, b, c = floats(lengths)
     radians = np.radians(floats(angles))
@@ -91,7 +91,7 @@ def superimposition_matrix(
 
     Args:
         v0: Three or more points, as columns of 3 or 4 components.
-        v1: As many target points.
+        v1: The same number of target points.
         scaling: Scale as well.
         usesvd: Find the rotation by singular values, otherwise by the quaternion of the best
             rotation.

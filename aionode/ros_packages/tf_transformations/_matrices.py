@@ -97,7 +97,7 @@ def rotation_matrix(
     """Return the matrix of a rotation.
 
     Args:
-        angle: In radians.
+        angle: The angle, in radians.
         direction: The direction of the axis.
         point: A point on the axis; the origin by default.
     """

@@ -50,7 +50,9 @@ bag_command.add_command(burst_command)
 @click.option("-s", "--storage", help="Has no effect: the format is detected.")
 @click.option("-t", "--topic-name", is_flag=True, help="Print only the names of the topics.")
 @click.option("-v", "--verbose", is_flag=True, help="Also print the QoS and type hashes.")
-@click.option("--sort", type=click.Choice(["name", "type", "count"]), default="name", help="Order.")
+@click.option(
+    "--sort", type=click.Choice(["name", "type", "count"]), default="name", help="Sort order."
+)
 @json_option
 def info_command(
     path: str, storage: str, topic_name: bool, verbose: bool, sort: str, json: bool

@@ -55,8 +55,8 @@ common_options = [
         help="Update rate of the progress line, in Hz; 0 disables it.",
     ),
     click.option("--progress-bar-separation-lines", type=int, help=NO_EFFECT),
-    click.option("--storage-config-file", type=click.Path(exists=True), help="As YAML."),
-    click.option("--qos-profile-overrides-path", type=click.Path(exists=True), help="As YAML."),
+    click.option("--storage-config-file", type=click.Path(exists=True), help="YAML file."),
+    click.option("--qos-profile-overrides-path", type=click.Path(exists=True), help="YAML file."),
     json_option,
 ]  # fmt: skip
 
@@ -150,7 +150,7 @@ def set_level(node: Node, level: str | None) -> None:
     "--compression-mode",
     type=click.Choice(["none", "file", "message"]),
     default="none",
-    help="Only none: chunks are compressed, so files stay readable.",
+    help="Only none is supported: chunks are compressed, so files stay readable.",
 )
 @click.option(
     "--storage-preset-profile",
@@ -317,7 +317,7 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
 @click.command("play")
 @interfaces_option
 @spread(play_options)
-@click.option("-r", "--rate", type=positive, default=1.0, help="How fast.")
+@click.option("-r", "--rate", type=positive, default=1.0, help="Speed.")
 @click.option("-l", "--loop", is_flag=True, help="Start over at the end.")
 @click.option("-p", "--start-paused", is_flag=True, help="Begin paused.")
 @click.option("-d", "--delay", type=seconds, default=0.0, help="Seconds before the first message.")
@@ -325,7 +325,7 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
 @click.option(
     "--playback-until-sec", type=float, help="Recorded time at which to stop, in seconds."
 )
-@click.option("--playback-until-nsec", type=int, help="The same in nanoseconds.")
+@click.option("--playback-until-nsec", type=int, help="The same, in nanoseconds.")
 @click.option(
     "--clock",
     "clock_hz",

@@ -127,7 +127,7 @@ def episode_keys(episodes: Episodes, tasks: asyncio.TaskGroup) -> dict[str, Call
 @click.option("--lerobot", "out", required=True, metavar="OUT", help="The folder of the data set.")
 @click.option("--contract", metavar="FILE", help="The contract; default: that of the recording.")
 @click.option("--task", default="", help="The task; default: that of each recording.")
-@click.option("--codec", type=click.Choice(["h264", "av1"]), default="h264", help="Of the videos.")
+@click.option("--codec", type=click.Choice(["h264", "av1"]), default="h264", help="Video codec.")
 @click.option("-j", "--jobs", type=click.IntRange(0), default=0, help="Bags at a time; 0 chooses.")
 @click.option("--max-dropped", type=SHARE, default=0.05, help="Maximum share of missing rows.")
 @click.option(

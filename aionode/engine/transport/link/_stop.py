@@ -25,7 +25,7 @@ class LinkStop(StopSender):
     the subscriptions there accept nothing older from the link.
 
     Args:
-        routes: Those of the publisher's messages.
+        routes: The routes of the publisher's messages.
         gid: Identifies the publisher.
         payload: The message.
         zenoh: Sends it over Zenoh.

@@ -20,7 +20,7 @@ class ReaderProxy:
         asked_ticks: Number of ticks at which it lacked messages before its first ACKNACK.
         heartbeat_ns: When the last heartbeat was sent to it.
         interval_ns: The interval between heartbeats while it does not answer.
-        away_until_ns: Until when to wait for its return; 0 while it is present.
+        away_until_ns: The time until which to wait for its return; 0 while it is present.
         returned_ns: When it came back after vanishing; 0 if it never vanished.
         is_cut_off: Whether it vanished while it was answering: either its connection was lost, and
             it should return immediately, or it has ended. `StatefulWriter.tick` distinguishes them.

@@ -95,7 +95,7 @@ async def prepared(robot: Robot, prepare: Prepare, received: Received) -> None:
     A message that is invalid for its type is left unchanged: `Received.once` raises its error.
 
     Args:
-        robot: Has the turns.
+        robot: The robot, which has the turns.
         prepare: Encodes it.
         received: The message.
     """

@@ -21,8 +21,8 @@ class Tolerances:
     """The tolerances of all joints.
 
     Attributes:
-        path: Those on the way.
-        goal: Those at the end.
+        path: The tolerances on the way.
+        goal: The tolerances at the end.
         goal_time_sec: How late the end may be reached; 0 means any time.
     """
 

@@ -279,7 +279,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
     Args:
         node_name: Its name.
         enable_communication_interface: Whether others can query and change its state.
-        options: Those of `Node`.
+        options: The options of `Node`.
     """
 
     def __init__(

@@ -90,12 +90,12 @@ def misnamed(entry: Observation | Action, name: str) -> str:
 
 
 def unique(keys: Iterable[str]) -> list[str]:
-    """Return keys as a list; ValueError if one is there twice."""
+    """Return keys as a list; ValueError if one occurs twice."""
     found = list(keys)
     twice = sorted({key for key in found if found.count(key) > 1})
     if twice:
         raise ValueError(
-            f"contract: {', '.join(twice)} is there twice; LeRobot has one name for each number of "
+            f"contract: {', '.join(twice)} occurs twice; LeRobot has one name for each number of "
             "all topics: give each its own by `names`"
         )
     return found

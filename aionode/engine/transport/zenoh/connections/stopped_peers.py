@@ -119,8 +119,8 @@ class StoppedPeers:
         if lost:
             pids = sorted(filter(None, map(pid_of, lost)))
             logger.info(
-                "processes %s are stopped; cutting their connections, which Zenoh makes anew when "
-                "they go on",
+                "processes %s are stopped; cutting their connections, which Zenoh restores when "
+                "they continue",
                 ", ".join(map(str, pids[:5])),
             )
             start_thread(

@@ -116,9 +116,9 @@ class Acknowledgements:
 
     Attributes:
         participants: The other contexts that acknowledge, including the last `GONE` that left.
-        present: Those of them whose tokens exist.
+        present: The participants whose tokens exist.
         near: The contexts of the same user and host with links.
-        far: Those with links, but of another user or host.
+        far: The contexts of another user or host with links.
     """
 
     def __init__(

@@ -114,7 +114,7 @@ def session_settings(
 
     Args:
         network: The settings of the context.
-        taken: Those of its meeting ports on which it cannot listen.
+        taken: The meeting ports on which it cannot listen.
         neighbours: What this machine lists; None if it lists nothing.
         is_watched: Whether the others on this machine check its process.
     """
