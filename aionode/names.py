@@ -183,7 +183,7 @@ def problem_outside(char: str) -> str | None:
 def token_problem(name: str) -> Problem | None:
     """Return the problem of the first token with an invalid first character, or None."""
     if name[0] == "~" and len(name) > 1 and name[1] != "/":
-        # rcl does not look at the last character, so it accepts "~a" but not "~ab". Here both are
+        # rcl does not check the last character, so it accepts "~a" but not "~ab". Here both are
         # refused.
         return (
             "topic name must not have a tilde '~' that is not followed by a forward slash '/'",

@@ -254,7 +254,7 @@ class Clients:
         if error.code == "too_many":  # already known
             client = self._policy.identify(credentials)
         self.robot.audit.note(client, "connect", "", result=error.reason, code=error.code)
-        # A browser does not tell its page the reason.
+        # A browser does not pass the reason to its page.
         self.robot.refusals.note(
             client, "connect", Refusal.of(error), error.subject, f"refused: {error.reason}"
         )

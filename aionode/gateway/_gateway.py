@@ -175,7 +175,7 @@ class Gateway:
         self.clients.end()
         server.stop()
         await serving
-        # Those of requests whose session has already ended:
+        # The commands of requests whose session has already ended:
         await self.clients.robot.commands.close()
 
     # Routes

@@ -272,7 +272,10 @@ async def test_a_goal_is_sent_once_for_each_press(desk: Callable[..., Any]) -> N
         ({"walk.type": "magic"}, "unknown type 'magic' for command 'walk'"),
         ({"walk.interface_type": "Twist"}, "Invalid type_name 'Twist'"),
         ({"walk.interface_type": "a/srv/B"}, "Cannot use interface of type 'srv' for an 'msg'"),
-        ({"walk.interface_type": "nowhere_msgs/msg/B"}, "type 'nowhere_msgs/msg/B' is not here"),
+        (
+            {"walk.interface_type": "nowhere_msgs/msg/B"},
+            "type 'nowhere_msgs/msg/B' is not available",
+        ),
         ({"walk.deadman_buttons": [-1]}, r"'deadman_buttons' is \[-1\]; use numbers from 0 on"),
         ({"walk.axis_mappings.linear-y.axis": 1}, "Axis mapping for 'walk' must have an offset"),
         ({"walk.axis_mappings.linear-y.speed": 1}, "must have an axis, button, or value"),

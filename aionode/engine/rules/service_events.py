@@ -119,6 +119,6 @@ class Introspection:
                 event.request = [content]
             else:
                 event.response = [content]
-        # A KEEP_ALL reader that does not read is no reason to fail the call.
+        # A KEEP_ALL reader that does not read must not make the call fail.
         with contextlib.suppress(QueueFullError):
             publisher.publish(event)

@@ -31,7 +31,7 @@ async def main() -> None:
 
 
 if __name__ == "__main__":
-    # Whatever is for ROS is left to `run`; this is what answers --help.
+    # Arguments of ROS are left to `run`; this parser answers --help.
     argparse.ArgumentParser(
         prog="python -m aionode.examples.rover",
         description="A small robot in a world of its own, and a page to drive it.",

@@ -114,7 +114,7 @@ class World:
         cos, sin = math.cos(place.heading), math.sin(place.heading)
         directions = np.stack([cos - left * sin, sin + left * cos], 1)
 
-        # For each pixel, how far ahead its line of sight meets each thing.
+        # The distance at which the line of sight of each pixel meets each thing.
         wall = to_walls(place, directions)
         meets_wall = above_floor + wall * up < WALL_HEIGHT
         with np.errstate(divide="ignore"):

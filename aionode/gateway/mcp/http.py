@@ -76,7 +76,7 @@ class McpOverHttp:
         # A session of the SDK belongs to the identity that began it.
         token = AccessToken(token="", client_id=identity.name, scopes=[])  # none is needed
         scope["user"] = AuthenticatedUser(token)
-        # A client whose cable was cut sends no sign of it.
+        # A client whose cable was cut cannot end its session.
         scope["state"]["aionode_connection"].lose_after(self._clients.policy.limits.client_lost_sec)
         await self._manager.handle_request(scope, receive, send)
 

@@ -64,7 +64,7 @@ LEAST_VARIANCE: Final = 1e-9
 Mask = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.intp]
 
-# How a rotation about an axis begins: its derivative is this matrix times the rotation.
+# The generators of rotations about an axis: the derivative is this matrix times the rotation.
 ABOUT_X: Final = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 ABOUT_Z: Final = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 

@@ -103,7 +103,7 @@ class BridgeWatcher:
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._tokens: dict[str, dict[str, BridgeToken]] = {}
         self._bridges: dict[str, Bridge] = {}
-        # Bridges that have not yet told their key prefix.
+        # Bridges whose key prefix is not known yet.
         self._asked: dict[str, asyncio.Future[None]] = {}
         # Number of endpoints per node; a node without any is forgotten.
         self._users: dict[NodeInfo, int] = {}

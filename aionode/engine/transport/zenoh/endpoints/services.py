@@ -461,7 +461,7 @@ class ZenohCall:
         try:
             response = cdr.decode(self._requester.srv_type.Response, sample.payload.to_bytes())
         except DecodeError as decode_error:
-            # Another server may answer in a better form; otherwise the caller is told.
+            # Another server may answer in a better form; otherwise the caller gets the error.
             self._requester.state.note_malformed(self._requester.key, str(decode_error))
             self._unreadable = ServiceError(
                 self._requester.endpoint.name, f"the response is unreadable: {decode_error}"
