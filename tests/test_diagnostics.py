@@ -118,7 +118,7 @@ async def test_a_task_that_fails_does_not_hold_up_the_others(
 async def test_the_period_is_a_parameter_that_may_change(
     node_factory: Callable[..., Node], manual_clock: ManualClock
 ) -> None:
-    """That of the program is what it has without one; two updaters of a node share it."""
+    """The program's period is its default; two updaters of a node share it."""
     driver = node_factory(
         "driver", parameter_overrides=[Parameter("diagnostic_updater.period", value=0.5)]
     )

@@ -204,7 +204,7 @@ def test_a_package_and_its_executable_are_a_program(workspace: Path) -> None:
 )
 @pytest.mark.usefixtures("workspace")
 def test_a_program_in_python_is_a_module_with_arguments(args: list[str], module: str) -> None:
-    """So that it is executed at once, in the process of the command."""
+    """It is executed at once, in the process of the command."""
     found = module_of(args)
 
     assert found is not None

@@ -108,7 +108,7 @@ def test_a_reader_may_be_frozen_for_longer_than_the_lease(freeze_s: float) -> No
 
 @pytest.mark.slow
 def test_a_frozen_reader_that_acknowledges_nothing_stops_no_loop() -> None:
-    """Like a ROS 2 node: a thread waits for it as long as its connection lasts."""
+    """Such as a ROS 2 node: a thread waits for it as long as its connection lasts."""
     freeze_reader(2.0, role="plain")
 
 

@@ -1,4 +1,4 @@
-"""Nodes that have only what a test gives them."""
+"""Nodes that have only the endpoints of a test."""
 
 from __future__ import annotations
 

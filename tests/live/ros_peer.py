@@ -20,7 +20,7 @@ PERIOD_S = 0.05
 
 
 class Peer(Node):
-    """Publishes, repeats what it hears, serves, and asks what it is told to ask."""
+    """Publishes, repeats what it receives, serves, and sends the requests that it is asked for."""
 
     def __init__(self) -> None:
         super().__init__("ros_peer")

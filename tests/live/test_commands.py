@@ -73,7 +73,7 @@ def robot(peer: subprocess.Popen[str], environment: dict[str, str], aionode: Run
 
 @pytest.mark.parametrize("command", SAME)
 def test_both_print_the_same(robot: None, ros2: Run, aionode: Run, command: str) -> None:
-    """For nodes of either."""
+    """They print the same for nodes of either."""
     assert plain(aionode(*command.split())) == plain(ros2(*command.split()))
 
 
@@ -87,6 +87,6 @@ def test_each_sets_parameters_of_the_other(robot: None, ros2: Run, aionode: Run,
 
 
 def plain(text: str) -> list[str]:
-    """Return the lines in order, without what differs at each look."""
+    """Return the lines in order, without what differs each time."""
     own = re.compile(r"^\s*/?_?ros2cli|/_ros2cli|aionode_cli|^WARNING|^$")
     return sorted(line.rstrip() for line in text.splitlines() if not own.search(line))

@@ -1,4 +1,4 @@
-"""Programs as a command line starts them, in a context without network."""
+"""Starts programs as a command line does, in a context without a network."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ TO_PX4 = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class FlightController(Node):
-    """PX4 behind its agent: armed and in offboard mode while it is told to be."""
+    """PX4 behind its agent: armed and in offboard mode while commanded to be."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("px4", **options)
@@ -46,7 +46,7 @@ class FlightController(Node):
         )
 
     def stay(self, _mode: OffboardControlMode) -> None:
-        """Say that it flies as it is told."""
+        """Report that it flies as commanded."""
         self.status.publish(
             VehicleStatus(
                 arming_state=VehicleStatus.ARMING_STATE_ARMED,
@@ -86,7 +86,7 @@ class Mavros(Node):
 
 
 class Arm(Node):
-    """An arm under ros2_control: it is where a trajectory ends, at once."""
+    """An arm under ros2_control, which reaches the end of a trajectory at once."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("controller_manager", **options)

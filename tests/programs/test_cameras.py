@@ -57,11 +57,11 @@ class Viewer:
         self.seen: asyncio.Queue[Any] = asyncio.Queue()
 
     def look(self, kind: Any, topic: str) -> None:
-        """Look at a topic."""
+        """Subscribe to a topic."""
         self.node.create_subscription(kind, topic, self.seen.put_nowait)
 
     async def pictures(self, count: int) -> list[Any]:
-        """Return so many messages."""
+        """Return a number of messages."""
         async with asyncio.timeout(20):
             return [await self.seen.get() for _ in range(count)]
 
@@ -220,7 +220,7 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
 async def test_what_does_not_fit_is_refused(
     start: Start, kind: Any, parameters: dict[str, Any], text: str
 ) -> None:
-    """With what does."""
+    """The error says what is valid."""
     with pytest.raises(CommandError, match=text):
         start(kind, **parameters)
 

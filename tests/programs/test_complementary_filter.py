@@ -24,7 +24,7 @@ STILL = (0.0, 0.0, 0.0)
 
 
 def tilted(roll: float, pitch: float) -> tuple[float, float, float]:
-    """Return what an IMU measures that stands still at these angles."""
+    """Return the measurements of an IMU that stands still at these angles."""
     return (
         -GRAVITY * math.sin(pitch),
         GRAVITY * math.cos(pitch) * math.sin(roll),
@@ -97,7 +97,7 @@ def test_the_magnetic_field_takes_a_share_of_a_wrong_heading_away() -> None:
 
 @pytest.mark.parametrize(("factor", "left"), [(1.05, 0.05), (1.15, 0.075), (1.3, 0.1)])
 def test_gravity_counts_less_while_the_robot_accelerates(factor: float, left: float) -> None:
-    """All of it below an error of 10 %, nothing from 20 % on."""
+    """It counts fully below an error of 10 %, and not at all from 20 % on."""
     filter_ = ComplementaryFilter(gain_acc=0.5, has_adaptive_gain=True)
     filter_.update(tilted(0.1, 0.0), STILL, 0.01)
 
@@ -107,7 +107,7 @@ def test_gravity_counts_less_while_the_robot_accelerates(factor: float, left: fl
 
 
 def test_the_bias_is_learned_while_it_stands_still() -> None:
-    """The first share of it at once; a robot that accelerates does not stand still."""
+    """A share of it is learned at each step; a robot that accelerates does not stand still."""
     filter_ = ComplementaryFilter(bias_alpha=0.1)
     filter_.update(UP, STILL, 0.01)
 
@@ -138,7 +138,7 @@ def test_a_turn_is_not_taken_for_a_bias() -> None:
     ],
 )
 def test_numbers_that_are_not_finite_change_nothing(given: Any) -> None:
-    """They would stay in the estimate for ever."""
+    """They would stay in the estimate forever."""
     filter_ = ComplementaryFilter()
     filter_.update(UP, STILL, 0.01)
 
@@ -147,7 +147,7 @@ def test_numbers_that_are_not_finite_change_nothing(given: Any) -> None:
 
 
 def test_free_fall_and_a_magnetic_pole_only_leave_the_gyroscopes() -> None:
-    """There is no direction to be had from them."""
+    """They contain no direction."""
     filter_ = ComplementaryFilter()
     assert not filter_.update(STILL, STILL, 0.01)
     filter_.update(UP, STILL, 0.01)
@@ -217,7 +217,7 @@ def wires(start: Start, node_factory: Callable[..., Any]) -> Callable[..., Any]:
 async def test_messages_get_an_orientation_from_the_second_one_on(
     wires: Callable[..., Any],
 ) -> None:
-    """The first one tells from when on time counts."""
+    """The first one sets the time from which seconds are counted."""
     robot = await wires(orientation_stddev=0.1)
     await robot.measure()
     assert robot.found == []

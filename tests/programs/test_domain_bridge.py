@@ -65,12 +65,12 @@ def write(tmp_path: Path) -> Callable[[str], str]:
 
 
 def ways(routes: list[Route]) -> list[tuple[str, int, int, str]]:
-    """Return what goes where."""
+    """Return the topics and their domains."""
     return [(route.topic, route.source, route.target, route.renamed) for route in routes]
 
 
 def test_topics_go_where_the_configuration_says(write: Callable[[str], str]) -> None:
-    """A topic may be there several times, as in the example of the original."""
+    """A topic may occur several times, as in the example of the original."""
     name, routes = configured([write(CONFIG)])
 
     assert name == "my_bridge"
@@ -93,7 +93,7 @@ def test_topics_go_where_the_configuration_says(write: Callable[[str], str]) -> 
 
 
 def test_arguments_take_precedence(write: Callable[[str], str]) -> None:
-    """Also for topics that go back."""
+    """They apply to topics that go back as well."""
     options = ["--from", "7", "--to", "8", "--wait-for-publisher", "false", "--auto-remove", "true"]
     _, routes = configured([*options, "--wait-for-subscription", "true", write(CONFIG)])
 
@@ -158,7 +158,7 @@ class Domains:
         self.bridges: list[Bridge] = []
 
     def listen(self, domain: int, topic: str, qos: QoSProfile | int = 10) -> None:
-        """Note what arrives in a domain."""
+        """Record what arrives in a domain."""
         self.others[domain].create_subscription(
             String, topic, lambda msg: self.heard.append((domain, msg.data)), qos
         )
@@ -168,7 +168,7 @@ class Domains:
         return self.others[domain].create_publisher(String, topic, qos)
 
     async def bridge(self, *routes: Route) -> None:
-        """Make the bridges that are due."""
+        """Create the bridges that are due."""
         self.bridges = bridges_for(routes, self.nodes)
         await self.check()
 
@@ -195,12 +195,12 @@ async def domains() -> AsyncIterator[Domains]:
 
 
 def route(topic: str = "/chatter", renamed: str = "", **more: Any) -> Route:
-    """Return the way of a topic from 2 to 3."""
+    """Return the route of a topic from 2 to 3."""
     return Route(topic, "std_msgs/msg/String", 2, 3, renamed or topic, **more)
 
 
 async def test_messages_reach_the_other_domain_under_their_other_name(domains: Domains) -> None:
-    """And nothing goes back."""
+    """Nothing goes back."""
     publisher = domains.publisher(2, "/chatter")
     domains.listen(3, "/robot/chatter")
     await domains.bridge(route(renamed="/robot/chatter"))
@@ -212,7 +212,7 @@ async def test_messages_reach_the_other_domain_under_their_other_name(domains: D
 
 
 async def test_a_topic_of_both_directions_does_not_return_to_its_sender(domains: Domains) -> None:
-    """It would go round for ever."""
+    """It would circulate forever."""
     one, other = domains.publisher(2, "/chatter"), domains.publisher(3, "/chatter")
     for domain in (2, 3):
         domains.listen(domain, "/chatter")
@@ -227,7 +227,7 @@ async def test_a_topic_of_both_directions_does_not_return_to_its_sender(domains:
 
 
 async def test_the_bridge_waits_for_a_publisher(domains: Domains) -> None:
-    """Since it tells the QoS: that of the subscription here is none that fits otherwise."""
+    """Its QoS is needed: the subscription here is incompatible with the default."""
     await domains.bridge(route())
     assert domains.bridges[0].output is None
 
@@ -248,7 +248,7 @@ async def test_a_bridge_that_does_not_wait_is_there_at_once(domains: Domains) ->
 
 
 async def test_a_bridge_may_end_with_what_it_waited_for(domains: Domains) -> None:
-    """And comes back with it."""
+    """It comes back with it."""
     publisher = domains.publisher(2, "/chatter")
     await domains.bridge(route(is_removed=True))
     assert domains.nodes[3].count_publishers("/chatter") == 1
@@ -263,7 +263,7 @@ async def test_a_bridge_may_end_with_what_it_waited_for(domains: Domains) -> Non
 
 
 async def test_a_bridge_may_wait_for_a_subscription(domains: Domains) -> None:
-    """So that nothing is sent that nobody wants."""
+    """Nothing is sent that nobody wants."""
     domains.publisher(2, "/chatter")
     await domains.bridge(route(waits_for_subscription=True))
     assert domains.bridges[0].output is None

@@ -129,7 +129,7 @@ class Desk:
         await settle()
 
     async def play(self, *events: Event) -> None:
-        """Have the hand do something."""
+        """Move the sticks and press buttons."""
         self.plugged[-1].events.extend(events)
         self.node.read()
         await self.wait(0.002)
@@ -180,7 +180,7 @@ async def test_the_ends_of_an_axis_are_one(desk: Desk) -> None:
 
 
 async def test_what_does_not_change_is_repeated(desk: Desk) -> None:
-    """Twenty times a second, so that who listens knows that it is still there."""
+    """It is repeated twenty times a second, so that listeners know that it is still there."""
     await desk.begin()
     await desk.wait(1.0)
 
@@ -188,7 +188,7 @@ async def test_what_does_not_change_is_repeated(desk: Desk) -> None:
 
 
 async def test_movements_within_a_moment_are_one_message(desk: Desk) -> None:
-    """The kernel says each axis alone."""
+    """The kernel reports each axis alone."""
     await desk.begin(autorepeat_rate=0.0, coalesce_interval_ms=10)
     for value in range(5000, 20000, 1000):
         await desk.play(Event(ABS, X, value))
@@ -255,7 +255,7 @@ async def test_a_joystick_of_joy_linux_is_chosen_by_its_device_or_its_name(
 async def test_parameters_of_joy_linux_that_do_not_fit_are_refused(
     start: Start, name: str, value: Any, text: str
 ) -> None:
-    """With what fits."""
+    """The error says what is valid."""
     with pytest.raises(CommandError, match=text):
         start(JoyLinuxNode, list, **{name: value})
 
@@ -304,7 +304,7 @@ def motors(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def rumble(intensity: float, **others: int) -> JoyFeedback:
-    """Return what has a joystick rumble."""
+    """Return the feedback that makes a joystick rumble."""
     return JoyFeedback(type=JoyFeedback.TYPE_RUMBLE, intensity=intensity, **others)
 
 
@@ -442,7 +442,7 @@ async def test_without_a_button_the_robot_stands(base: Callable[..., Any]) -> No
 
 
 async def test_no_button_may_be_required(base: Callable[..., Any]) -> None:
-    """Whoever wants it so."""
+    """A parameter says so."""
     wheels = await base(require_enable_button=False)
     await wheels.hold(axes=(0.0, 1.0))
 

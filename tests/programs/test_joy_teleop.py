@@ -170,7 +170,7 @@ async def test_buttons_that_are_not_there_are_not_pressed(desk: Callable[..., An
 
 
 async def test_axes_at_their_ends_are_buttons(desk: Callable[..., Any]) -> None:
-    """Such as the triggers of a game pad."""
+    """The triggers of a game pad are such axes."""
     given = WALK | {"walk.deadman_axes": [0], "walk.deadman_axes_negative": [2]}
     it = await desk(Twist, "cmd_vel", **given)
 
@@ -214,7 +214,7 @@ async def test_other_messages_are_published_without_a_stop(desk: Callable[..., A
 
 
 async def test_a_service_is_called_once_for_each_press(desk: Callable[..., Any]) -> None:
-    """Or as soon as there is a server, while the button is held."""
+    """Without a server, it is called as soon as there is one, while the button is held."""
     it = await desk(
         **{
             "add.type": "service",

@@ -95,7 +95,7 @@ def test_a_correction_makes_the_estimate_more_certain(make: Any) -> None:
 
 @BOTH
 def test_what_time_made_uncertain_is_left_to_the_next_measurement(make: Any) -> None:
-    """Of 0.05 a second and 0.1 of the measurement, which says 1."""
+    """The variance grows by 0.05 a second, and that of the measurement, which says 1, is 0.1."""
     filter_ = started(make, 1e-12)
 
     filter_.process(measurement(X, 1.0, 0.1, 2_000_000_000))

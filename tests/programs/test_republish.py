@@ -28,18 +28,18 @@ def picture(encoding: str = "bgr8") -> Image:
 
 
 class Viewer:
-    """A camera, and who looks at its pictures."""
+    """A camera, and a subscription to its pictures."""
 
     def __init__(self, node: Any) -> None:
         self.node = node
         self.seen: list[Any] = []
 
     def look(self, kind: Any, topic: str) -> Any:
-        """Look at a topic."""
+        """Subscribe to a topic."""
         return self.node.create_subscription(kind, topic, self.seen.append)
 
     async def show(self, kind: Any, topic: str, *images: Any) -> list[Any]:
-        """Publish images, and return what is seen."""
+        """Publish images, and return what is received."""
         publisher = self.node.create_publisher(kind, topic, 10)
         await settle()
         for image in images:
@@ -184,6 +184,6 @@ async def test_a_rule_may_name_the_topic_or_its_base(
     ],
 )
 async def test_what_there_is_not_is_refused(start: Start, name: str, value: str, text: str) -> None:
-    """With what there is."""
+    """The error says what is available."""
     with pytest.raises(CommandError, match=text):
         start(Republisher, **{name: value})

@@ -56,7 +56,7 @@ def yaw_of(turn: Any) -> float:
 
 
 class Robot:
-    """The sensors, and what the program says."""
+    """The sensors of a robot, and the estimates of the program."""
 
     def __init__(self, node: Any, clock: ManualClock, program: FilterNode) -> None:
         self.node, self.clock, self.program = node, clock, program
@@ -303,7 +303,7 @@ async def test_a_pose_of_another_part_of_the_robot_is_moved_to_its_base(robot: M
 
 
 async def test_a_twist_is_turned_into_the_frame_of_the_robot(robot: Make) -> None:
-    """Of a sensor that looks to the left."""
+    """The sensor looks to the left."""
     it = await robot(twist0="flow", twist0_config=uses(6, 7))
     await it.mount("base_link", "flow_link", yaw=math.pi / 2)
     msg = TwistWithCovarianceStamped()
@@ -392,7 +392,7 @@ async def test_without_measurements_the_robot_goes_on_in_the_estimate(robot: Mak
 
 
 async def test_if_wanted_the_estimate_is_always_for_the_present(robot: Make) -> None:
-    """Not for the last measurement."""
+    """Otherwise it is for the last measurement."""
     it = await robot(odom0="wheels", odom0_config=uses(6), predict_to_current_time=True)
     found = await it.send("wheels", it.odometry(speed=1.0))
 
@@ -455,7 +455,7 @@ async def test_only_so_many_measurements_wait(robot: Make) -> None:
 
 @pytest.mark.parametrize("stamp", [0, -5])
 async def test_messages_without_a_time_are_ignored(robot: Make, stamp: int) -> None:
-    """Also those before 1970."""
+    """Messages with times before 1970 are ignored, too."""
     it = await robot(odom0="wheels", odom0_config=uses(0))
     msg = it.odometry(1.0)
     msg.header.stamp.sec = stamp
@@ -465,7 +465,7 @@ async def test_messages_without_a_time_are_ignored(robot: Make, stamp: int) -> N
 
 
 async def test_a_message_older_than_the_last_one_is_ignored(robot: Make) -> None:
-    """Of the same sensor; the diagnostics say so."""
+    """Messages of the same sensor are compared; the diagnostics say so."""
     it = await robot(odom0="wheels", odom0_config=uses(0), print_diagnostics=True)
     await it.send("wheels", it.odometry(1.0))
     found = await it.send("wheels", it.odometry(9.0, late_sec=0.5))

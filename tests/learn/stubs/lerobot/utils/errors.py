@@ -4,7 +4,7 @@ __all__ = ["DeviceAlreadyConnectedError", "DeviceNotConnectedError"]
 
 
 class DeviceNotConnectedError(ConnectionError):
-    """It is not connected."""
+    """A device is not connected."""
 
     def __init__(self, message: str = "not connected") -> None:
         self.message = message
@@ -12,7 +12,7 @@ class DeviceNotConnectedError(ConnectionError):
 
 
 class DeviceAlreadyConnectedError(ConnectionError):
-    """It is connected already."""
+    """A device is connected already."""
 
     def __init__(self, message: str = "already connected") -> None:
         self.message = message
