@@ -55,6 +55,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "joy_teleop": {"joy_teleop": "_joy.joy_teleop"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "joint_state_publisher_gui": {"joint_state_publisher_gui": "_joint_state_publisher"},
+    "nav2_amcl": {"amcl": "_amcl.amcl"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "nav2_map_server": {"map_server": "_map_server.map_server"},
     "robot_localization": {
@@ -106,6 +107,7 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
         "image_transport::Republisher": ("_camera.republish:Republisher", "image_republisher")
     },
     "joy": {"joy::Joy": ("_joy.joy_node:JoyNode", "joy_node")},
+    "nav2_amcl": {"nav2_amcl::AmclNode": ("_amcl.amcl:Amcl", "amcl")},
     "nav2_lifecycle_manager": {
         "nav2_lifecycle_manager::LifecycleManager": (
             "_lifecycle_manager:Manager",
@@ -191,7 +193,6 @@ REMARKS: Final[dict[str, str]] = {
                 "nav2_planner",
                 "nav2_behaviors",
                 "nav2_bt_navigator",
-                "nav2_amcl",
             ),
             *("nav2_map_server", "nav2_smoother", "nav2_waypoint_follower", "nav2_bringup"),
             *("nav2_velocity_smoother", "nav2_collision_monitor", "nav2_route", "nav2_costmap_2d"),

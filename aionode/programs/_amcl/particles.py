@@ -1,0 +1,243 @@
+"""The cloud of guesses: how it moves, and how the better guesses replace the others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from aionode.programs._amcl.likelihood import Array
+
+__all__ = ["Estimate", "Particles", "moved_differentially", "moved_sideways"]
+
+BIN: Final = np.array([0.5, 0.5, math.radians(10.0)])
+"""Guesses within such a box count as one, for how many are needed and for clusters."""
+
+Bins = npt.NDArray[np.int64]
+
+NO_WAY: Final = 0.01
+"""A shorter way has no direction."""
+
+
+def turn(angle: Array | float) -> Array:
+    """Return angles between -π and π."""
+    return np.arctan2(np.sin(angle), np.cos(angle))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Where most of the weight is.
+
+    Attributes:
+        pose: x, y and the heading of the heaviest cluster.
+        covariance: Of all guesses, for x, y and the heading.
+    """
+
+    pose: Array
+    covariance: Array
+
+
+class Particles:
+    """Guesses of where the robot is, with weights.
+
+    Args:
+        random: The source of chance.
+        least: The lowest number of guesses.
+        most: The highest.
+        error: How far their distribution may be off.
+        z: The standard score for how sure that is.
+        slow: How fast the long-term average of likelihoods follows; 0 for no recovery.
+        fast: The same for the short-term average.
+
+    Attributes:
+        poses: x, y and the heading of each.
+        weights: Their sum is 1.
+    """
+
+    def __init__(
+        self,
+        random: np.random.Generator,
+        *,
+        least: int,
+        most: int,
+        error: float,
+        z: float,
+        slow: float = 0.0,
+        fast: float = 0.0,
+    ) -> None:
+        self.random = random
+        self.least, self.most = least, most
+        self.error, self.z = error, z
+        self.slow, self.fast = slow, fast
+        self.slow_average = self.fast_average = 0.0
+        self.spread(np.zeros((1, 3)))
+
+    def spread(self, poses: Array) -> None:
+        """Replace the guesses by equally likely ones."""
+        self.poses = poses
+        self.weights: Array = np.full(len(poses), 1.0 / len(poses))
+        self.slow_average = self.fast_average = 0.0
+
+    def place(self, mean: Sequence[float], covariance: Array) -> None:
+        """Spread guesses around a pose."""
+        self.spread(
+            self.random.multivariate_normal(mean, covariance, self.most, check_valid="ignore")
+        )
+
+    def weigh(self, likelihood: Array) -> None:
+        """Multiply the weights by how likely each guess is."""
+        weights = self.weights * likelihood
+        total = float(weights.sum())
+        if not 0.0 < total < math.inf:
+            self.weights = np.full(len(self.poses), 1.0 / len(self.poses))
+            return
+        self.weights = weights / total
+        average = total / len(weights)
+        for name, rate in (("slow_average", self.slow), ("fast_average", self.fast)):
+            before = getattr(self, name)
+            setattr(self, name, before + rate * (average - before) if before else average)
+
+    def resample(self, anywhere: Callable[[int], Array]) -> None:
+        """Draw guesses anew, heavier ones more often, and as many as their spread needs.
+
+        Args:
+            anywhere: Returns poses that know nothing: some are drawn when the guesses fit much
+                worse than usual, as the robot may have been carried away.
+        """
+        lost = 0.0
+        if self.slow_average > 0.0:
+            lost = max(0.0, 1.0 - self.fast_average / self.slow_average)
+        poses = self.poses[self.random.choice(len(self.poses), self.most, p=self.weights)]
+        is_random = self.random.random(self.most) < lost
+        if is_random.any():
+            poses[is_random] = anywhere(int(is_random.sum()))
+        averages = self.slow_average, self.fast_average
+        self.spread(poses[: self.needed(poses)])
+        if not lost:
+            self.slow_average, self.fast_average = averages
+
+    def needed(self, poses: Array) -> int:
+        """Return how many of these poses suffice: after how many draws few new bins appear."""
+        _, first = np.unique(bins_of(poses), axis=0, return_index=True)
+        filled = np.zeros(len(poses), dtype=int)
+        filled[first] = 1
+        enough = np.arange(1, len(poses) + 1) > self.limits(np.cumsum(filled))
+        return int(np.argmax(enough)) + 1 if enough.any() else len(poses)
+
+    def limits(self, count: Bins) -> Array:
+        """Return how many guesses so many filled bins need, after Fox (2001)."""
+        more = np.maximum(count - 1, 1)
+        part = 2.0 / (9.0 * more)
+        needed = np.ceil(more / (2.0 * self.error) * (1.0 - part + np.sqrt(part) * self.z) ** 3)
+        result: Array = np.where(count <= 1, self.most, np.clip(needed, self.least, self.most))
+        return result
+
+    def estimate(self) -> Estimate:
+        """Return where the heaviest cluster is."""
+        clusters = clusters_of(bins_of(self.poses))
+        heaviest = np.argmax(np.bincount(clusters, self.weights))
+        mine = clusters == heaviest
+        pose, _ = statistics(self.poses[mine], self.weights[mine])
+        return Estimate(pose, statistics(self.poses, self.weights)[1])
+
+
+def bins_of(poses: Array) -> Bins:
+    """Return the bin of each pose."""
+    result: Bins = np.floor(poses / BIN).astype(np.int64)
+    return result
+
+
+def clusters_of(bins: Bins) -> Bins:
+    """Return the cluster of each bin: bins that touch each other, also by a corner, are one."""
+    distinct, index = np.unique(bins, axis=0, return_inverse=True)
+    left = {tuple(row): at for at, row in enumerate(distinct.tolist())}
+    label = np.zeros(len(distinct), dtype=np.int64)
+    around = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
+    number = 0
+    while left:
+        first, at = left.popitem()
+        label[at] = number
+        edge = [first]
+        while edge:
+            x, y, yaw = edge.pop()
+            for i, j, k in around:
+                found = left.pop((x + i, y + j, yaw + k), None)
+                if found is not None:
+                    label[found] = number
+                    edge.append((x + i, y + j, yaw + k))
+        number += 1
+    return label[index.reshape(-1)]
+
+
+def statistics(poses: Array, weights: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of poses; the heading goes round."""
+    share = weights / weights.sum()
+    x, y = share @ poses[:, :2]
+    cosine, sine = share @ np.cos(poses[:, 2]), share @ np.sin(poses[:, 2])
+    off = poses[:, :2] - (x, y)
+    covariance = np.zeros((3, 3))
+    covariance[:2, :2] = (share * off.T) @ off
+    covariance[2, 2] = -2.0 * math.log(min(1.0, max(1e-12, math.hypot(cosine, sine))))
+    return np.array([x, y, math.atan2(sine, cosine)]), covariance
+
+
+Noise = Sequence[float]
+"""alpha1 to alpha5: how uncertain turns and ways make turns, ways and steps aside."""
+
+
+def moved_differentially(
+    poses: Array, before: Array, delta: Array, alpha: Noise, random: np.random.Generator
+) -> Array:
+    """Return poses after a way of a robot with two wheels: a turn, a way, a turn.
+
+    Args:
+        poses: The poses.
+        before: That of the odometry before.
+        delta: Its change.
+        alpha: The noise.
+        random: The source of chance.
+    """
+    way = math.hypot(delta[0], delta[1])
+    first = 0.0 if way < NO_WAY else float(turn(math.atan2(delta[1], delta[0]) - before[2]))
+    last = float(turn(delta[2] - first))
+    # Driving backwards is no turn by half a circle.
+    first_size, last_size = (
+        min(abs(float(turn(each))), abs(float(turn(each - math.pi)))) for each in (first, last)
+    )
+    count = len(poses)
+
+    def noise(*parts: float) -> Array:
+        return random.normal(0.0, math.sqrt(sum(parts)), count)
+
+    a1, a2, a3, a4, *_ = alpha
+    first_turn = first - noise(a1 * first_size**2, a2 * way**2)
+    moved = way - noise(a3 * way**2, a4 * first_size**2, a4 * last_size**2)
+    last_turn = last - noise(a1 * last_size**2, a2 * way**2)
+    heading = poses[:, 2] + first_turn
+    x, y = poses[:, 0] + moved * np.cos(heading), poses[:, 1] + moved * np.sin(heading)
+    return np.column_stack([x, y, turn(heading + last_turn)])
+
+
+def moved_sideways(
+    poses: Array, before: Array, delta: Array, alpha: Noise, random: np.random.Generator
+) -> Array:
+    """Return poses after a way of a robot that drives in any direction; see above."""
+    way, turned = math.hypot(delta[0], delta[1]), float(delta[2])
+    count = len(poses)
+
+    def noise(*parts: float) -> Array:
+        return random.normal(0.0, math.sqrt(sum(parts)), count)
+
+    a1, a2, a3, a4, a5 = alpha
+    bearing = math.atan2(delta[1], delta[0]) - before[2] + poses[:, 2]
+    cosine, sine = np.cos(bearing), np.sin(bearing)
+    moved = way + noise(a3 * way**2, a1 * turned**2)
+    aside = noise(a1 * turned**2, a5 * way**2)
+    x = poses[:, 0] + moved * cosine + aside * sine
+    y = poses[:, 1] + moved * sine - aside * cosine
+    yaw = poses[:, 2] + turned + noise(a4 * turned**2, a2 * way**2)
+    return np.column_stack([x, y, turn(yaw)])
