@@ -115,7 +115,7 @@ async def stopping_at_signals(*nodes: Node | Supervisor[Any]) -> AsyncIterator[N
     """End motion and open routes at the first signal that ends the server, before the server does.
 
     A web server tells the application of a signal only when all its connections have closed, which
-    an open route or a stream of events may delay for ever. Within this block, which spans the
+    an open route or a stream of events may delay forever. Within this block, which spans the
     lifespan of the application, the first signal does at once what the end of the lifespan would do
     later: the stop of each open lease is sent, even while a callback blocks the event loop; each
     block of `until_disconnected` is cancelled, and with it the goals and calls that it awaits, and

@@ -197,7 +197,7 @@ async def test_a_bad_request_is_no_reason_to_restart(
 
 
 async def test_what_fails_at_the_first_start_is_raised() -> None:
-    """A typo in a constructor is not tried again for ever."""
+    """A typo in a constructor is not tried again forever."""
 
     def make() -> Node:
         raise LookupError("no such port")

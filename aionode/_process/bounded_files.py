@@ -32,7 +32,7 @@ pipes.
 def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
     """Read a configuration file.
 
-    A pipe without a writer would block for ever, and a device may have no end.
+    A pipe without a writer would block forever, and a device may have no end.
 
     Args:
         path: The file.

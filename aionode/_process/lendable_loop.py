@@ -18,7 +18,7 @@ Even so, Python may run other code between any two bytecodes of that thread:
   the loop, since it would wait for the thread that it has interrupted.
 - *An exception from a handler*. Work that it interrupts stays half done, but the loop is released
   if a ``finally`` does so. That is not always enough: an exception before the ``try``, or at the
-  first bytecode of `give_back` or `end` itself, leaves the loop held for ever. So the main thread
+  first bytecode of `give_back` or `end` itself, leaves the loop held forever. So the main thread
   calls `borrow` and `begin` only while no handler that may raise is installed.
 - *The garbage collector*, in any thread: finalizers and weak reference callbacks. The rules for
   handlers apply to them too. Python prints what they raise, and it does not propagate.

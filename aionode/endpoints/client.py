@@ -83,7 +83,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         """Wait until a server is matched.
 
         Args:
-            timeout_sec: The longest wait in seconds; None waits for ever.
+            timeout_sec: The longest wait in seconds; None waits forever.
 
         Returns:
             True once a server is matched, False if none was within `timeout_sec`. A server that is
@@ -116,7 +116,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         Args:
             request: An instance of ``srv_type.Request``; it may be changed once the call has
                 started.
-            timeout_sec: The longest wait in seconds; None waits for ever.
+            timeout_sec: The longest wait in seconds; None waits forever.
 
         Raises:
             TypeError: `request` is of another type.

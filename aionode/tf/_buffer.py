@@ -128,7 +128,7 @@ class Buffer(NodeBufferCore):
             target_frame: The frame to transform to.
             source_frame: The frame to transform from.
             time: The time; by default the latest common one.
-            timeout_sec: How long to wait, in seconds of the node's clock; None for ever.
+            timeout_sec: How long to wait, in seconds of the node's clock; None forever.
 
         Raises:
             TimeoutException: it was not available in time; the text says why (a TimeoutError).

@@ -182,7 +182,7 @@ async def test_a_policy_slower_than_half_its_chunk_is_reported_before_anything_m
 
 
 async def test_a_policy_slower_than_its_chunk_is_an_error_and_nothing_moves(robot: Robot) -> None:
-    """It would stand still for ever, and nothing would say so."""
+    """It would stand still forever, and nothing would say so."""
     stats, ended = await driven(robot, robot.policy(0.7, 16), 4.0)
 
     assert isinstance(ended, PolicyTooSlowError)

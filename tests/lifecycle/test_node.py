@@ -180,7 +180,7 @@ def test_something_that_is_no_managed_entity_is_refused() -> None:
 
 
 async def test_a_result_of_another_kind_is_an_error(managed: Managed) -> None:
-    """With rclpy the node stays in `configuring` for ever."""
+    """With rclpy the node stays in `configuring` forever."""
     managed.outcomes["configure"] = lambda: None
 
     with pytest.raises(TransitionError, match="on_configure returned None; return Transition"):
@@ -559,7 +559,7 @@ async def test_a_timer_of_a_node_that_is_not_active_is_not_reset(
 
 
 async def test_the_events_of_a_node_end_with_it(managed: Managed) -> None:
-    """Whoever reads them would wait for ever."""
+    """Whoever reads them would wait forever."""
 
     async def read() -> list[str]:
         return [event.state.label async for event in managed.lifecycle_events()]

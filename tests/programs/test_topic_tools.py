@@ -121,7 +121,7 @@ async def test_a_relay_does_not_hear_itself(start: Start) -> None:
 async def test_a_program_without_a_topic_says_which_parameter_it_needs(
     start: Start, kind: type[Node]
 ) -> None:
-    """It would wait for ever."""
+    """It would wait forever."""
     with pytest.raises(CommandError, match=r"parameter 'input_topics?' is required"):
         start(kind)
 

@@ -207,7 +207,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Wait until a server is matched.
 
         Args:
-            timeout_sec: The longest wait in seconds; None waits for ever.
+            timeout_sec: The longest wait in seconds; None waits forever.
 
         Returns:
             True once a server is matched, False if none was within `timeout_sec`.

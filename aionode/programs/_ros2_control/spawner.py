@@ -46,7 +46,12 @@ def common_options() -> argparse.ArgumentParser:
     option = parser.add_argument
     option("-c", "--controller-manager", default="controller_manager", help="name of the manager")
     option("-n", "--namespace", default="", help="deprecated: namespace of the manager")
-    option("--controller-manager-timeout", type=float, default=0.0, help="0 waits for ever")
+    option(
+        "--controller-manager-timeout",
+        type=float,
+        default=0.0,
+        help="time to wait for the manager, in seconds; 0 waits forever",
+    )
     option("--switch-timeout", type=float, default=5.0, help="time to activate, in seconds")
     option("--service-call-timeout", type=float, default=10.0, help="time for each answer")
     option("--activate-as-group", action="store_true", help="activate all controllers together")

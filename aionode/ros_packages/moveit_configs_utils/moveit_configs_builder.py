@@ -126,7 +126,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         try:
             self._configs.robot_description = {self._description: described(path, texts)}
         except ParameterBuilderFileNotFoundError as error:
-            LOG.warning("%s; the topic /robot_description is taken instead", error.args[0])
+            LOG.warning("%s; using the topic /robot_description instead", error.args[0])
         return self
 
     def robot_description_semantic(
@@ -274,9 +274,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return content.get("moveit_setup_assistant_config") or {}
 
     def _guessed(self, kind: str) -> Path:
-        """Return where a description is if nothing says so."""
+        """Return the usual path of a description that the package does not name."""
         path = CONFIG / f"{self._robot_name}.{kind.lower()}"
-        LOG.warning("%s names no %s; %s is taken", self._package_path, kind, path)
+        LOG.warning("%s does not name the %s; using %s", self._package_path, kind, path)
         return path
 
     def _path(self, file_path: str | Path | None, default: Path | None = None) -> Path:

@@ -58,7 +58,7 @@ export function mesh(name, buffer) {
   if (kind === "stl") return stl(buffer);
   if (kind === "obj") return obj(new TextDecoder().decode(buffer));
   if (kind === "dae") return collada(new TextDecoder().decode(buffer));
-  throw new Error(`${name}: meshes in STL, OBJ and COLLADA (.dae) are shown`);
+  throw new Error(`${name}: only meshes in STL, OBJ and COLLADA (.dae) can be shown`);
 }
 
 function stl(buffer) {
@@ -75,7 +75,7 @@ function stl(buffer) {
 
 function stlText(text) {
   const numbers = [...text.matchAll(/vertex\s+(\S+)\s+(\S+)\s+(\S+)/g)].flatMap((found) => found.slice(1).map(Number));
-  if (!numbers.length || numbers.length % 9) throw new Error("it is no STL");
+  if (!numbers.length || numbers.length % 9) throw new Error("it is not an STL file");
   return new Float32Array(numbers);
 }
 
@@ -89,7 +89,7 @@ function obj(text) {
       const index = parseInt(value, 10);
       return places[index < 0 ? places.length + index : index - 1];
     });
-    if (face.includes(undefined)) throw new Error("a face of the OBJ has a corner that is not there");
+    if (face.includes(undefined)) throw new Error("a face of the OBJ has a corner that does not exist");
     faces.push(face);
   }
   return trianglesOf(faces);
@@ -99,7 +99,7 @@ function obj(text) {
 
 function collada(text) {
   const tree = new DOMParser().parseFromString(text, "text/xml");
-  if (tree.querySelector("parsererror")) throw new Error("it is no COLLADA");
+  if (tree.querySelector("parsererror")) throw new Error("it is not a COLLADA file");
   const unit = Number(tree.querySelector("asset unit")?.getAttribute("meter") ?? 1);
   const up = tree.querySelector("asset up_axis")?.textContent.trim() ?? "Y_UP";
   const upright = up === "Z_UP" ? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0] : [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0];

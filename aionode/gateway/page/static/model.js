@@ -32,7 +32,7 @@ function originOf(tag) {
 export function modelOf(urdf, fetchAsset) {
   const tree = new DOMParser().parseFromString(urdf, "text/xml");
   const robot = tree.documentElement;
-  if (tree.querySelector("parsererror") || robot.tagName !== "robot") throw new Error("the description is no URDF");
+  if (tree.querySelector("parsererror") || robot.tagName !== "robot") throw new Error("the description is not a URDF");
   const colourOf = (material) => numbers(inner(material, "color")?.getAttribute("rgba"), GREY);
   const materials = new Map([...robot.children].filter(({ tagName }) => tagName === "material")
     .map((material) => [material.getAttribute("name"), colourOf(material)]));
@@ -69,7 +69,7 @@ async function trianglesOf(shape, fetchAsset) {
       const scale = numbers(shape.getAttribute("scale"), [1, 1, 1]);
       return mesh(name, await fetchAsset(name)).map((each, at) => each * scale[at % 3]);
     }
-    default: throw new Error(`${shape.tagName}: boxes, cylinders, spheres and meshes are shown`);
+    default: throw new Error(`${shape.tagName}: only boxes, cylinders, spheres and meshes can be shown`);
   }
 }
 

@@ -209,7 +209,7 @@ class IoThread:
 
         Args:
             wakeup: What is waited for.
-            timeout_sec: The longest time in seconds; None for ever.
+            timeout_sec: The longest time in seconds; None forever.
 
         Returns:
             Whether a wake-up has come.

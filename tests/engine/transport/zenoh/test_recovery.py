@@ -267,7 +267,7 @@ async def test_one_that_ended_is_looked_for_and_nothing_is_cut(comparisons: Comp
 async def test_where_all_sessions_are_listed_nobody_is_asked_about_one_that_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Zenoh dials listed sessions for ever; each question costs a session that is opened for it."""
+    """Zenoh dials listed sessions forever; each question costs a session that is opened for it."""
     monkeypatch.setattr(recovery, "FIRST_S", 0.01)
     asked: list[str] = []
     open_probe = _config.open_probe
@@ -518,7 +518,7 @@ async def only_at_router() -> AsyncIterator[str]:
 
 
 async def test_an_unreachable_participant_is_given_up(comparisons: Comparisons) -> None:
-    """A program on a host that only the router reaches would be looked for for ever."""
+    """A program on a host that only the router reaches would be looked for forever."""
     async with robot("theirs", "one") as (_, one), context("a1") as ours, only_at_router() as zid:
         await until_seen(ours, "theirs", "one")
         await asyncio.to_thread(one.close)
