@@ -1,4 +1,4 @@
-"""The same rclpy programs on aionode and on ROS 2's rclpy: how long a message takes.
+"""The same rclpy programs on aionode and on ROS 2's rclpy: what a message takes.
 
 One program publishes to a callback of its own node a hundred times a second (``in process``); two
 programs send a small message to and fro a hundred times a second (``two processes``). A third one
@@ -74,7 +74,17 @@ os._exit(0)
 
 MESSAGES = 50  # of one turn
 OURS, DEFAULT, EVENTS = "aionode run", "rclpy, default executor", "rclpy, events executor"
-AIMS = (("start", DEFAULT, 1.0), ("in process", DEFAULT, 0.5), ("two processes", EVENTS, 0.8))
+PROCESSOR = ", processor"
+AIMS = (
+    ("start", DEFAULT, 1.0),
+    ("in process", DEFAULT, 0.5),
+    ("in process" + PROCESSOR, EVENTS, 0.7),
+    ("two processes", EVENTS, 0.8),
+    ("two processes" + PROCESSOR, EVENTS, 0.7),
+)
+
+Medians = dict[tuple[str, str], float]
+"""Nanoseconds by row and candidate."""
 
 
 def main() -> None:
@@ -95,44 +105,58 @@ def main() -> None:
             DEFAULT: (theirs, str(program), "default"),
             EVENTS: (theirs, str(program), "events"),
         }
-        medians = {
-            (what, name): median
-            for what, roles in (("in process", ("alone",)), ("two processes", ("echo", "player")))
-            for name, median in measure(commands, roles, turns).items()
-        }
-        for name, median in measure_start(commands, turns).items():
-            medians["start", name] = median
-    print("medians in µs" + "".join(f"{name:>26}" for name in commands))
+        medians = measure_start(commands, turns)
+        for what, roles in (("in process", ("alone",)), ("two processes", ("echo", "player"))):
+            medians |= measure(what, commands, roles, turns)
+    print(f"{'medians in µs':24}" + "".join(f"{name:>26}" for name in commands))
     for what, base, aim in AIMS:
         row = "".join(f"{medians[what, name] / 1e3:>26.0f}" for name in commands)
         ratio = medians[what, OURS] / medians[what, base]
-        print(f"{what:13}{row}   {ratio:.2f} x {base}'s (aim {aim})")
+        print(f"{what:24}{row}   {ratio:.2f} x {base}'s (aim {aim})")
 
 
 def measure(
-    commands: dict[str, tuple[str, ...]], roles: tuple[str, ...], turns: int
-) -> dict[str, float]:
-    """Return the median of each candidate in nanoseconds; `roles` names its programs."""
+    what: str, commands: dict[str, tuple[str, ...]], roles: tuple[str, ...], turns: int
+) -> Medians:
+    """Return how long a message takes, and the processor time of all programs for it.
+
+    Args:
+        what: The name of the row.
+        commands: The candidates.
+        roles: The programs of each.
+        turns: Number of turns.
+    """
     running = {
         name: [start(command, role, domain_id) for role in roles]
         for domain_id, (name, command) in enumerate(commands.items(), 60)
     }
     times: dict[str, list[int]] = {name: [] for name in commands}
+    processor: dict[str, list[float]] = {name: [] for name in commands}
     try:
         for turn in range(turns + 1):
             for name, programs in running.items():
+                before = sum(map(processor_ns, programs))
                 found = ask(programs[-1])
                 if turn:  # the first one is for warming up
                     times[name] += found
+                    processor[name].append((sum(map(processor_ns, programs)) - before) / MESSAGES)
     finally:
         for programs in running.values():
             for each in programs:
                 each.kill()
                 each.wait()
-    return {name: statistics.median(found) for name, found in times.items()}
+    return {(what, name): statistics.median(times[name]) for name in commands} | {
+        (what + PROCESSOR, name): statistics.median(processor[name]) for name in commands
+    }
 
 
-def measure_start(commands: dict[str, tuple[str, ...]], turns: int) -> dict[str, float]:
+def processor_ns(program: subprocess.Popen[str]) -> int:
+    """Return the processor time that the threads of a program have taken."""
+    threads = Path(f"/proc/{program.pid}/task").glob("*/schedstat")
+    return sum(int(thread.read_text().split()[0]) for thread in threads)
+
+
+def measure_start(commands: dict[str, tuple[str, ...]], turns: int) -> Medians:
     """Return the median time of each candidate from its start until it has spun once, in ns."""
     times: dict[str, list[int]] = {name: [] for name in commands}
     for turn in range(turns + 1):
@@ -141,7 +165,7 @@ def measure_start(commands: dict[str, tuple[str, ...]], turns: int) -> dict[str,
             start(command, "start", 60).communicate()
             if turn:  # the first one fills caches
                 times[name].append(time.perf_counter_ns() - began)
-    return {name: statistics.median(found) for name, found in times.items()}
+    return {("start", name): statistics.median(found) for name, found in times.items()}
 
 
 def start(command: tuple[str, ...], role: str, domain_id: int) -> subprocess.Popen[str]:
