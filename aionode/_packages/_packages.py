@@ -204,4 +204,5 @@ def installed_at(name: str) -> Path | None:
 def prefixes() -> list[Path]:
     """Return the prefixes of installed packages: those of ROS, then Python's own."""
     named = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    return [Path(path) for path in (*named, sys.prefix) if path and Path(path).is_dir()]
+    paths = dict.fromkeys((*named, sys.prefix))
+    return [Path(path) for path in paths if path and Path(path).is_dir()]

@@ -241,6 +241,17 @@ def test_without_the_option_a_plugin_that_is_missing_is_an_error_that_says_what_
         _ = Plan(files.write("a.launch.py", CONTAINER)).steps
 
 
+def test_the_plugins_that_need_a_container_are_named(files: Files) -> None:
+    """Of nodes that aionode has, the container is not missed."""
+    text = CONTAINER.replace("image_proc", "robot_camera")
+
+    with pytest.raises(
+        LaunchFileError,
+        match=r"'rclcpp_components': .*; it is needed for robot_camera::RectifyNode; ",
+    ):
+        _ = Plan(files.write("a.launch.py", text)).steps
+
+
 def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) -> None:
     """A container of Python classes needs none either."""
     text = CONTAINER.replace(
@@ -576,3 +587,18 @@ def test_what_is_started_is_not_told_that_ros_is_sourced(files: Files) -> None:
 
     assert all("AMENT_PREFIX_PATH" not in step.env for step in found if isinstance(step, Process))
     assert "AMENT_PREFIX_PATH" not in os.environ
+
+
+def test_each_place_where_packages_are_is_named_once(files: Files) -> None:
+    """Also the one that launch files can read."""
+    text = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="nowhere", executable="a")])
+"""
+    with pytest.raises(LaunchFileError) as raised:
+        _ = Plan(files.write("a.launch.py", text)).steps
+
+    assert str(raised.value).count(sys.prefix) == 1

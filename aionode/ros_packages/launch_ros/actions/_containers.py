@@ -74,7 +74,11 @@ class ComposableNodeContainer(Node):
         known = [each.package for each in foreign if remark_on(each.package)]
         if known and not context.skips_missing:
             raise here().not_found(known[0]) from None
-        if not (foreign and context.skips_missing):
+        if foreign and not context.skips_missing:
+            plugins = ", ".join(dict.fromkeys(each.plugin for each in foreign))
+            remark = f"{error.remark}; it is needed for {plugins}"
+            raise PackageNotFoundError(error.name, error.places, (), remark) from None
+        if not foreign:
             raise error
         for each in foreign:
             package = each.package if each.package in known else error.name
