@@ -27,7 +27,7 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
     def __init__(self, node: str) -> None:
         self.node = node
         super().__init__(
-            f"{node}: no such node; look at the names that are there, or wait for it, as "
+            f"{node}: no such node; look at the existing names, or wait for it, as "
             "wait_for_node() does"
         )
 

@@ -1,4 +1,4 @@
-"""Units of fields, as far as the comments of a definition tell them."""
+"""Units of fields, as far as the comments of a definition state them."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ SAID: Final = rf"(?:\b[Ii]n +|(?<!\w)[\[(])({UNIT})(?![\w/²³^·])(?= and ({UNI
 
 @cache
 def units(cls: type[Message]) -> dict[str, str]:
-    """Return the units of the fields of a message class, as far as its comments tell them.
+    """Return the units of the fields of a message class, as far as its comments state them.
 
     The key ``""`` has the unit of all fields, as of those of a Point. A comment that names several
     units says nothing.
