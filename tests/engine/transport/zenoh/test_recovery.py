@@ -6,7 +6,9 @@ import asyncio
 import itertools
 import os
 import random
+import subprocess
 import sys
+import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, closing, suppress
 from types import SimpleNamespace
@@ -16,7 +18,7 @@ import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode._process.concurrency import checkpoint
-from aionode.engine.transport.network import Network, network_from
+from aionode.engine.transport.network import Network, network_from, new_participant
 from aionode.engine.transport.zenoh._defects import forgotten_peers as recovery
 from aionode.engine.transport.zenoh._defects import stale_transports
 from aionode.engine.transport.zenoh._defects._connection_mend import ATTEMPTS
@@ -24,6 +26,7 @@ from aionode.engine.transport.zenoh._defects.forgotten_peers import (
     GossipSource,
     Recovery,
     addresses_of,
+    has_ended,
     participant_of,
 )
 from aionode.engine.transport.zenoh._defects.incomplete_answers import tokens
@@ -32,6 +35,7 @@ from aionode.engine.transport.zenoh.connections import config as _config
 from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.engine.transport.zenoh.connections.config import PROBE_IDS, is_probe
 from aionode.engine.transport.zenoh.connections.sockets import Descriptor, split_locator
+from aionode.engine.transport.zenoh.discovery.graph_watcher import Watcher
 from aionode.graph import Graph, NodeInfo
 from tests.support.peers import (
     DOMAIN_ID,
@@ -287,6 +291,65 @@ async def test_where_all_sessions_are_listed_nobody_is_asked_about_one_that_ende
 
         assert not ours._recovery._later.waits
     assert asked == []
+
+
+@pytest.fixture
+def looked(monkeypatch: pytest.MonkeyPatch) -> asyncio.Event:
+    """Set when it was looked whether the process of a lost session runs: that of b2 has ended."""
+    event = asyncio.Event()
+
+    def ended(zid: str) -> bool:
+        event.set()
+        return zid == "b2"
+
+    monkeypatch.setattr(recovery, "has_ended", ended)
+    return event
+
+
+@pytest.mark.parametrize("leaves", [False, True])
+async def test_tokens_are_compared_after_the_end_of_a_process_only_if_it_has_left_some(
+    leaves: bool, looked: asyncio.Event, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each of the others would compare all tokens for each process that ends."""
+    checks: list[bool] = []
+    monkeypatch.setattr(Watcher, "check", lambda _: checks.append(True))
+    async with context("a1") as ours:
+        async with context("b2"):
+            await until_seen(ours, "b2")
+            if leaves:  # as if its withdrawal were lost
+                assert ours.session_state.announced.admit("b2", "left")
+        async with asyncio.timeout(LIMIT_S):
+            await looked.wait()
+
+    assert bool(checks) == leaves
+
+
+async def test_no_gossip_source_is_asked_about_a_process_that_has_ended(
+    looked: asyncio.Event, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each question costs a session that is opened for it, and there are forty in two minutes."""
+    asking: list[threading.Thread] = []
+    async with robot("theirs"), context("a1") as ours:
+        async with context("b2"):
+            await until_seen(ours, "b2", "theirs")
+            kinds = ours.session_state.connections.kinds
+            await until(lambda: len(kinds) == 3)
+            monkeypatch.setattr(recovery, "start_thread", asking.append)
+        async with asyncio.timeout(LIMIT_S):
+            await looked.wait()
+
+    assert asking == []
+
+
+def test_a_process_has_ended_once_the_system_does_not_know_it() -> None:
+    """A session's id names its process."""
+    own = new_participant()
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    zid = f"{own[:17]}{process.pid:08x}{own[25:]}"
+    runs = not has_ended(zid)  # also as a zombie
+    process.wait()
+
+    assert (runs, has_ended(zid), has_ended(own), has_ended("a1")) == (True, True, False, False)
 
 
 @pytest.mark.parametrize("named", ["nothing", "own", "half"])

@@ -16,13 +16,15 @@ Workaround:
     the source sees a participant that this session does not see or has lost, or if it does not see
     this session, the connection to the source is cut. Zenoh re-establishes it at once, and the
     source names all others again. If only sessions that this machine lists are connected, nothing
-    is compared: each has the earlier ones in its configuration.
+    is compared: each has the earlier ones in its configuration. Nor is it if all that were lost are
+    sessions of processes that have ended.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import socket
 import threading
 from contextlib import closing, suppress
@@ -31,7 +33,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 from msgspec import Struct
 
-from aionode.engine.transport.network import DiscoveryRange
+from aionode.engine.transport.network import DiscoveryRange, pid_of
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._connection_mend import (
     ATTEMPTS,
@@ -123,6 +125,8 @@ class Recovery(ConnectionMend):
         self._comparisons = state.queue(self._take_comparison)
         self._is_comparing = False
         self._until_s = 0.0
+        # Lost sessions whose process was running when it was last looked at.
+        self._lost: set[str] = set()
         self._has_met_router = False
         self._changing_since_s = 0.0  # when the first change was seen after the last comparison
         # Those that were missing in the last comparison; used by its thread only.
@@ -137,12 +141,14 @@ class Recovery(ConnectionMend):
         self._comparisons.clear()
         self._is_comparing = False
         self._until_s = 0.0
+        self._lost.clear()
         self._attempts = {}  # not cleared: a thread may read the old one
 
     def _take_change(self, change: ConnectionChange, now_s: float) -> None:
         self._has_met_router |= change.kind == zenoh.WhatAmI.ROUTER
         if not change.is_made:
             self._until_s = now_s + WATCH_S
+            self._lost.add(change.zid)
         elif now_s >= self._until_s:
             return  # nothing was lost
         self._checks = CHECKS
@@ -163,8 +169,14 @@ class Recovery(ConnectionMend):
         if self._is_comparing:
             self._compare_in(FIRST_S)
             return
+        if not self._may_have_forgotten():
+            self._until_s = 0.0
+            return
         if not self._may_be_introduced():
             self._until_s = 0.0
+            # A token that is out of date has to be missing twice, so its session stays.
+            announced, connected = self._state.announced, self._state.connections.kinds
+            self._lost = {zid for zid in self._lost if announced.has(zid) and zid not in connected}
             self._watcher.check()
             return
         known = self._watcher.node_tokens() | self._state.acknowledgements.tokens()
@@ -177,6 +189,15 @@ class Recovery(ConnectionMend):
                 name="aionode-zenoh",
             )
         )
+
+    def _may_have_forgotten(self) -> bool:
+        """Return whether a session was lost that may exist, or is in the graph nevertheless.
+
+        Most are lost because their process has ended: each process would compare all tokens.
+        """
+        announced = self._state.announced
+        self._lost = {zid for zid in self._lost if not has_ended(zid) or announced.has(zid)}
+        return bool(self._lost)
 
     def _may_be_introduced(self) -> bool:
         """Return whether gossip may have named a session that is, or was, connected."""
@@ -273,6 +294,20 @@ class Recovery(ConnectionMend):
         now_s = asyncio.get_running_loop().time()
         if not self._later.waits and now_s < self._until_s:
             self._compare_in(FIRST_S if missing else AGAIN_S)
+
+
+def has_ended(zid: str) -> bool:
+    """Return whether the process of a session has ended, as far as this process can tell."""
+    pid = pid_of(zid)
+    if pid is None:
+        return False
+    try:
+        os.kill(pid, 0)  # sends nothing; unlike /proc, it also knows what the system hides
+    except ProcessLookupError:
+        return True
+    except OSError:  # another user's
+        return False
+    return False
 
 
 def seen_at(

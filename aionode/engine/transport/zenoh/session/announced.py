@@ -74,6 +74,10 @@ class AnnouncedLimit:
         self._judge()
         return True
 
+    def has(self, participant: str) -> bool:
+        """Return whether a token of a participant is kept."""
+        return participant in self._of
+
     def release(self, participant: str, key: str) -> None:
         """Release a token that was admitted."""
         if participant not in self._of:  # everything was forgotten meanwhile
