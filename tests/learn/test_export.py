@@ -438,7 +438,7 @@ def test_several_bags_are_converted_at_the_same_time(tmp_path: Path) -> None:
 @pytest.mark.processes
 def test_a_process_of_an_export_that_was_killed_is_one_sentence(tmp_path: Path) -> None:
     """As for lack of memory: the others' work stays, and one job at a time needs less."""
-    bags = [demonstration(tmp_path / f"run{number}", length_sec=0.5) for number in range(2)]
+    bags = [demonstration(tmp_path / f"run{sec}", length_sec=sec) for sec in (0.2, 4.0)]
 
     def kill(done: int, whole: int) -> None:
         del done, whole
