@@ -366,7 +366,7 @@ def test_a_full_temporary_folder_is_named(tmp_path: Path, monkeypatch: pytest.Mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("aionode.bag.files.compression.write_plain", is_full)
-    with pytest.raises(BagError, match=r"not enough space .* set TMPDIR"):
+    with pytest.raises(BagError, match=r"not have enough space .* set TMPDIR"):
         bag.open(packed)
 
 
