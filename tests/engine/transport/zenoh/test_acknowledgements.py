@@ -7,18 +7,21 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import threading
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from typing import Any
 
 import pytest
 import zenoh  # noqa: TID251  # plays another process, without aionode
 
 from aionode._process.concurrency import checkpoint
+from aionode._process.later import Later
 from aionode.clock import perf_ns
 from aionode.engine.context import Context
 from aionode.engine.transport.link._listener import Listener
+from aionode.engine.transport.network import network_from
 from aionode.engine.transport.reliability import stateful_writer
 from aionode.engine.transport.reliability import submessage as acknack
 from aionode.engine.transport.reliability.stateful_reader import StatefulReader
@@ -35,7 +38,7 @@ from aionode.engine.transport.zenoh.endpoints import publisher as publishers
 from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
 from aionode.engine.transport.zenoh.endpoints.sender import ZenohSender
 from aionode.engine.wire import cdr
-from aionode.graph import EndpointInfo
+from aionode.graph import EndpointInfo, Graph
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -255,6 +258,38 @@ async def test_a_context_of_another_user_is_not_near() -> None:
     state.acknowledgements.note_links("c3", is_near=True, present=True)
 
     assert state.acknowledgements.near == {"c3"}
+
+
+async def test_a_context_that_starts_is_waited_for_only_until_its_links_are_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A timer would wake each process once more for each that starts, in whatever order it hears.
+
+    Zenoh names the tokens of a context that has just been connected in any order.
+    """
+    monkeypatch.setattr(acknowledgements, "FAR_S", 1000.0)
+    calls: list[Later] = []
+
+    class Counted(Later):
+        __slots__ = ()
+
+        def call(self, delay_s: float, action: Callable[[], object]) -> None:
+            calls.append(self)
+            super().call(delay_s, action)
+
+    async with AsyncExitStack() as stack:
+        transports: list[ZenohTransport] = []
+        for participant in ("a1", "b2"):
+            monkeypatch.setattr(acknowledgements, "Later", Counted if not transports else Later)
+            transport = ZenohTransport(participant, network_from(os.environ))
+            transport.peer_directory.advertisement = f"{participant}/link/1/host/user"
+            await transport.open(Graph())
+            stack.push_async_callback(transport.close)
+            transports.append(transport)
+        known = transports[0].session_state.acknowledgements
+        await until(lambda: known.present == known.near == {"b2"})
+
+        assert not any(later.waits for later in calls)
 
 
 @asynccontextmanager

@@ -276,6 +276,8 @@ class Acknowledgements:
         """Record that another context announces links, or does not any more."""
         if present and is_near:
             self.near.add(participant)
+            if self.present <= self.near:
+                self._far_check.cancel()
         elif present:
             self.far.add(participant)
             self._listen_to_far()
@@ -348,7 +350,9 @@ class Acknowledgements:
         if participant not in self.participants:
             self.participants.add(participant)
             self._on_participant(participant)
-        if self._session is not None and not (self._listens_to_far or self._far_check.waits):
+        if participant in self.near or self._session is None:
+            return
+        if not (self._listens_to_far or self._far_check.waits):
             self._far_check.call(FAR_S, self._check_far)
 
     def _check_far(self) -> None:
