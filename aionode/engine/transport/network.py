@@ -384,7 +384,11 @@ def pid_of(participant: str) -> int | None:
     is_named = len(participant) == 32 and space is not None
     if not is_named or participant[13:17] != f"{space:04x}":
         return None
-    return int(participant[17:25], 16)
+    try:
+        pid = int(participant[17:25], 16)
+    except ValueError:
+        return None
+    return pid if 0 < pid < 1 << 31 else None
 
 
 def udp_sockets() -> list[str] | None:

@@ -292,6 +292,14 @@ def test_an_id_of_other_software_names_none(other: str) -> None:
     assert pid_of(other) is None
 
 
+@pytest.mark.parametrize("number", ["00000000", "ffffffff", "80000000", "in a tok"])
+def test_an_id_with_a_number_that_no_process_has_names_none(number: str) -> None:
+    """A peer may choose it, and the system would take 0 for all processes of a group."""
+    own = new_participant()
+
+    assert pid_of(own[:17] + number + own[25:]) is None
+
+
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:
     """Later processes find it there; the port of a ROS router is never taken."""
     found = settings(Network())
