@@ -207,7 +207,7 @@ async def test_a_workspace_is_installed_and_its_unit_started(host: Host, workspa
     assert host.calls()[-1] == "systemctl restart my_robot.service"
 
 
-@pytest.mark.slow
+@pytest.mark.stress
 @pytest.mark.timeout(180)  # four wheels are made
 async def test_a_connection_that_breaks_leaves_what_runs(host: Host, workspace: Path) -> None:
     """While files are copied or installed; the same command then completes the release."""

@@ -48,7 +48,7 @@ def output_of(system: str, *arguments: str) -> str:
 
 
 @pytest.mark.slow
-@both_systems
+@one_system
 def test_every_module_is_imported(system: str) -> None:
     """Even those that are not used there, such as those of links."""
     assert output_of(system, MEMBER, "import") == "imported\n"
