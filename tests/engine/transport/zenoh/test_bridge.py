@@ -245,7 +245,7 @@ async def test_a_request_is_served_once_with_a_bridge_and_peers(bridge: StandIn)
         await until(lambda: b.graph.count(EndpointKind.SERVER, "/add_two_ints") == 2)
         for number in range(5):
             assert (await client.call(AddTwoInts.Request(a=number, b=1))).sum == number + 1
-        await until(lambda: len(bridge.served) == 5)
+        await until(lambda: (len(served), len(bridge.served)) == (5, 5))
 
     assert served == [0, 1, 2, 3, 4]
 
