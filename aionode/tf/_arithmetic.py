@@ -7,14 +7,14 @@ quite 1, so that results agree with tf2.
 
 from __future__ import annotations
 
-from math import acos, cos, sin, sqrt
-from typing import TYPE_CHECKING
+from math import acos, asin, atan2, copysign, cos, pi, sin, sqrt
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 __all__ = ["IDENTITY", "Edge", "Pose", "chained", "composed"]
-__all__ += ["from_angles", "given_transform", "interpolated", "inverted", "unit"]
+__all__ += ["angles_of", "from_angles", "given_transform", "interpolated", "inverted", "unit"]
 
 Pose = tuple[float, float, float, float, float, float, float]
 """Translation x, y, z, and rotation x, y, z, w."""
@@ -125,6 +125,19 @@ def from_angles(roll: float, pitch: float, yaw: float) -> tuple[float, float, fl
         cr * cp * sy - sr * sp * cy,
         cr * cp * cy + sr * sp * sy,
     )
+
+
+def angles_of(matrix: Any) -> tuple[float, float, float]:
+    """Return the angles of a rotation around the fixed axes x, y and z, in radians.
+
+    Looking straight up or down, the one around z is 0, as in tf2. The matrix may be rows of numbers
+    or an array of numpy.
+    """
+    down = matrix[2][0]
+    roll = atan2(matrix[2][1], matrix[2][2])
+    if abs(down) >= 1.0:
+        return roll, copysign(pi / 2, -down), 0.0
+    return roll, -asin(down), atan2(matrix[1][0], matrix[0][0])
 
 
 def given_transform(

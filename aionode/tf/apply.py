@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.interfaces.geometry_msgs import msg as geometry
 from aionode.interfaces.sensor_msgs.msg import PointCloud2
-from aionode.tf._arithmetic import Pose, composed, from_angles, given_transform, unit
+from aionode.tf._arithmetic import Pose, angles_of, composed, from_angles, given_transform, unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Pose",
+    "angles_of",
     "composed",
     "do_transform",
     "from_angles",

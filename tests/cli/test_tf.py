@@ -17,7 +17,6 @@ from aionode.cli._nouns.tf import (
     echo,
     echo_text,
     list_frames,
-    roll_pitch_yaw,
     send_static,
     static_transform,
     tree,
@@ -26,7 +25,7 @@ from aionode.cli._nouns.tf.tree import FrameEdge, as_svg, as_text
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.testing import ManualClock, settle
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
-from aionode.tf.apply import matrix_of, pose_of
+from aionode.tf.apply import angles_of, matrix_of, pose_of
 from tests.support.transforms import transform
 
 NUMBERS: dict[str, float | None] = dict.fromkeys(
@@ -55,7 +54,7 @@ def test_angles_at_the_poles_have_no_yaw() -> None:
     """At the poles, roll and yaw rotate about the same axis."""
     half = math.sqrt(0.5)
     upwards = transform("a", "b", 1.0, rotation=(0.0, half, 0.0, half))
-    assert roll_pitch_yaw(matrix_of(pose_of(upwards))) == pytest.approx((0, math.pi / 2, 0))
+    assert angles_of(matrix_of(pose_of(upwards))) == pytest.approx((0, math.pi / 2, 0))
 
 
 async def test_echo_waits_says_why_and_then_prints(

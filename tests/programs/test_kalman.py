@@ -20,11 +20,11 @@ from aionode.programs._robot_localization.kalman import (
     transfer,
 )
 from aionode.programs._robot_localization.rotation import (
-    angles_of,
     matrix_of,
     quaternion_of,
     wrapped,
 )
+from aionode.tf.apply import angles_of
 
 BOTH = pytest.mark.parametrize("make", [Ekf, Ukf])
 

@@ -16,9 +16,9 @@ from aionode.message_filters import ApproximateTimeSynchronizer, Subscriber
 from aionode.parameter import QoSOverridingOptions
 from aionode.programs._imu_tools.complementary_filter import ComplementaryFilter
 from aionode.programs._imu_tools.quaternions import inverse
-from aionode.programs._tf2.echo import angles_of
 from aionode.qos import QoSPolicyKind
 from aionode.tf import TransformBroadcaster, rotation_matrix
+from aionode.tf.apply import angles_of
 
 __all__ = ["ComplementaryFilterNode", "main"]
 

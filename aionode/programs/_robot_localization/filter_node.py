@@ -40,10 +40,11 @@ from aionode.programs._robot_localization.measurements import (
     matrix_of_transform,
     nanoseconds,
 )
-from aionode.programs._robot_localization.rotation import Array, angles_of, quaternion_of
+from aionode.programs._robot_localization.rotation import Array, quaternion_of
 from aionode.programs._robot_localization.sensors import MAX_QUEUED, SensingNode
 from aionode.programs._robot_localization.settings import OK
 from aionode.tf import TransformBroadcaster
+from aionode.tf.apply import angles_of
 
 __all__ = ["FilterNode"]
 

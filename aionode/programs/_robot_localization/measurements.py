@@ -23,8 +23,9 @@ from aionode.programs._robot_localization.kalman import (
     Mask,
     Measurement,
 )
-from aionode.programs._robot_localization.rotation import Array, angles_of, matrix_of, wrapped
+from aionode.programs._robot_localization.rotation import Array, matrix_of, wrapped
 from aionode.tf import rotation_matrix
+from aionode.tf.apply import angles_of
 
 __all__ = ["Frames", "Measuring", "Sensor", "is_unknown", "matrix_of_transform", "nanoseconds"]
 

@@ -14,6 +14,7 @@ from aionode.arguments import remove_ros_args
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.programs._wall_timer import create_wall_timer
 from aionode.tf import Buffer, TransformException, rotation_matrix
+from aionode.tf.apply import angles_of
 
 __all__ = ["Echo", "main", "text_of"]
 
@@ -28,16 +29,6 @@ Default echo rate is 1 if echo_rate is not given.
 
 WAITING_SEC: Final = 1.0
 """Shortest interval at which it prints that it is waiting."""
-
-
-def angles_of(matrix: Sequence[Sequence[float]]) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw of a rotation; looking straight up or down, yaw is 0."""
-    down = matrix[2][0]
-    if abs(down) >= 1.0:
-        roll = math.atan2(matrix[2][1], matrix[2][2])
-        return roll, math.copysign(math.pi / 2, -down), 0.0
-    roll = math.atan2(matrix[2][1], matrix[2][2])
-    return roll, -math.asin(down), math.atan2(matrix[1][0], matrix[0][0])
 
 
 def text_of(transform: TransformStamped) -> str:

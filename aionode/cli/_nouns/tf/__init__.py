@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, atan2, copysign, degrees, pi
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,13 +13,12 @@ from aionode.cli._support.options import hertz, seconds
 from aionode.clock import Clock, ClockType, Time
 from aionode.errors import TransformException
 from aionode.tf import Buffer, StaticTransformBroadcaster, TimeoutException
-from aionode.tf.apply import given_transform, matrix_of, pose_of
+from aionode.tf.apply import angles_of, given_transform, matrix_of, pose_of
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
     from aionode.node import Node
-    from aionode.tf.apply import Matrix
 
 __all__ = ["echo", "list_frames", "send_static", "tf_command", "tree"]
 
@@ -99,7 +98,7 @@ def echo_text(transform: TransformStamped) -> str:
         transform.transform.rotation,
     )
     matrix = matrix_of(pose_of(transform))
-    angles = roll_pitch_yaw(matrix)
+    angles = angles_of(matrix)
     rows = [
         *([*row, offset] for row, offset in zip(matrix, (moved.x, moved.y, moved.z), strict=True)),
         [0.0, 0.0, 0.0, 1.0],
@@ -122,18 +121,6 @@ def listed(*numbers: float) -> str:
     return f"[{', '.join(f'{number:.3f}' for number in numbers)}]"
 
 
-def roll_pitch_yaw(matrix: Matrix) -> tuple[float, float, float]:
-    """Return the angles around the fixed axes x, y and z, in radians."""
-    sine = -matrix[2][0]
-    if abs(sine) >= 1:
-        return atan2(matrix[2][1], matrix[2][2]), copysign(pi / 2, sine), 0.0
-    return (
-        atan2(matrix[2][1], matrix[2][2]),
-        asin(sine),
-        atan2(matrix[1][0], matrix[0][0]),
-    )
-
-
 def record_of(transform: TransformStamped) -> dict[str, Any]:
     """Return a transform as a record."""
     stamp, moved, turned = (
@@ -148,7 +135,7 @@ def record_of(transform: TransformStamped) -> dict[str, Any]:
         "nanosec": stamp.nanosec,
         "translation": [moved.x, moved.y, moved.z],
         "rotation": [turned.x, turned.y, turned.z, turned.w],
-        "rpy": list(roll_pitch_yaw(matrix_of(pose_of(transform)))),
+        "rpy": list(angles_of(matrix_of(pose_of(transform)))),
     }
 
 
