@@ -97,6 +97,10 @@ class Robot:
         await settle()
         return self.found[-1] if self.found else None
 
+    def texts(self, key: str) -> set[str]:
+        """Return what the diagnostics have said under a key."""
+        return {value.value for each in self.statuses for value in each.values if value.key == key}
+
     def odometry(
         self,
         x: float = 0.0,
@@ -472,13 +476,21 @@ async def test_a_message_older_than_the_last_one_is_ignored(robot: Make) -> None
     await it.tick(1.0)
 
     assert found.pose.pose.position.x == 1.0
-    (text,) = {
-        value.value
-        for each in it.statuses
-        for value in each.values
-        if value.key == "odom0_pose_timestamp"
-    }
+    (text,) = it.texts("odom0_pose_timestamp")
     assert text.startswith("The odom0_pose message has a timestamp before that of the previous")
+
+
+async def test_a_message_of_an_unknown_frame_is_ignored(robot: Make) -> None:
+    """The diagnostics show its name escaped, as others may have chosen it."""
+    it = await robot(odom0="wheels", odom0_config=uses(0), print_diagnostics=True)
+    await it.send("wheels", it.odometry(1.0))
+    found = await it.send("wheels", it.odometry(9.0, frame="moon\x1b[2J"))
+    await it.tick(1.0)
+
+    assert found.pose.pose.position.x == 1.0
+    assert it.texts("odom0_pose_transform") == {
+        r"There is no transform from 'moon\x1b[2J' to 'odom'; the odom0_pose message is ignored."
+    }
 
 
 @EACH

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from aionode.errors import escaped
 from aionode.programs._robot_localization.kalman import (
     ACCELERATION,
     ANGULAR,
@@ -118,12 +119,23 @@ class Measuring:
         self.first.clear()
         self.previous.clear()
 
+    def _moved(self, sensor: Sensor, target: str, source: str, stamp_ns: int) -> Array | None:
+        """Return the matrix between two frames; None, and the message is ignored, without one."""
+        found = self.lookup(target, source, stamp_ns)
+        if found is None:
+            self.complain(
+                f"{sensor.name}_transform",
+                f"There is no transform from '{escaped(source, one_line=True)}' to '{target}'; the "
+                f"{sensor.name} message is ignored.",
+            )
+        return found
+
     def pose(self, sensor: Sensor, header: Any, given: Any, source: str) -> Measurement | None:
         """Return the measurement of a pose with covariance, that of the frame `source`."""
         target = self.frames.world
         frame = target if sensor.is_differential else header.frame_id
         stamp_ns = nanoseconds(header.stamp)
-        to_target = self.lookup(target, frame, stamp_ns)
+        to_target = self._moved(sensor, target, frame, stamp_ns)
         to_base = np.eye(4)
         if source != self.frames.base:
             found = self.lookup(source, self.frames.base, stamp_ns)
@@ -143,7 +155,7 @@ class Measuring:
         turned by the angle about the vertical.
         """
         stamp_ns = nanoseconds(imu.header.stamp)
-        mounted = self.lookup(self.frames.base, imu.header.frame_id, stamp_ns)
+        mounted = self._moved(sensor, self.frames.base, imu.header.frame_id, stamp_ns)
         if mounted is None:
             return None
         covariance = np.zeros((6, 6))
@@ -198,7 +210,7 @@ class Measuring:
     def twist(self, sensor: Sensor, header: Any, given: Any, frame: str) -> Measurement | None:
         """Return the measurement of a twist with covariance in a frame."""
         stamp_ns = nanoseconds(header.stamp)
-        mounted = self.lookup(self.frames.base, frame, stamp_ns)
+        mounted = self._moved(sensor, self.frames.base, frame, stamp_ns)
         if mounted is None:
             return None
         rotation, offset = mounted[:3, :3], mounted[:3, 3]
@@ -218,7 +230,7 @@ class Measuring:
         """Return an IMU's measurement of the acceleration."""
         stamp_ns = nanoseconds(imu.header.stamp)
         frame = imu.header.frame_id or self.frames.base
-        mounted = self.lookup(self.frames.base, frame, stamp_ns)
+        mounted = self._moved(sensor, self.frames.base, frame, stamp_ns)
         if mounted is None:
             return None
         rotation, offset = mounted[:3, :3], mounted[:3, 3]
