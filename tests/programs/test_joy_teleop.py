@@ -14,7 +14,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.sensor_msgs.msg import Joy
-from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
+from aionode.interfaces.std_msgs.msg import Int8, String, UInt8MultiArray
 from aionode.programs._joy.joy_teleop import JoyTeleop
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
@@ -162,6 +162,27 @@ async def test_axes_that_are_no_numbers_or_not_there_are_zero(desk: Callable[...
     assert speeds(await it.press(0, 1, axes=(0.5,))) == [(0.0, 0.0)]
 
 
+async def test_an_axis_farther_out_than_its_field_holds_publishes_nothing(
+    desk: Callable[..., Any], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whoever publishes the joystick must not end the program."""
+    steer = {
+        "walk.interface_type": "std_msgs/msg/Int8",
+        "walk.type": "topic",
+        "walk.topic_name": "steer",
+        "walk.deadman_buttons": [0],
+        "walk.axis_mappings.data.axis": 0,
+        "walk.axis_mappings.data.scale": 100.0,
+        "walk.axis_mappings.data.offset": 0.0,
+    }
+    it = await desk(Int8, "steer", **steer)
+    await it.clock.advance(10.0)  # the errors are throttled
+
+    assert await it.press(1, axes=[5.0]) == []
+    assert "'walk' publishes nothing: std_msgs/msg/Int8.data: 500" in caplog.text
+    assert await it.press(1, axes=[1.0]) == [Int8(data=100)]
+
+
 async def test_buttons_that_are_not_there_are_not_pressed(desk: Callable[..., Any]) -> None:
     """A dead man's button above all; the original ignores it, and moves the robot."""
     it = await desk(Twist, "cmd_vel", **WALK | {"walk.deadman_buttons": [1, 10]})
@@ -277,6 +298,14 @@ async def test_a_goal_is_sent_once_for_each_press(desk: Callable[..., Any]) -> N
             "type 'nowhere_msgs/msg/B' is not available",
         ),
         ({"walk.deadman_buttons": [-1]}, r"'deadman_buttons' is \[-1\]; use numbers from 0 on"),
+        ({"walk.deadman_buttons": 1}, "'deadman_buttons' is 1; use numbers from 0 on, in a list"),
+        ({"walk.topic_name": 5}, "command 'walk': 'topic_name' is 5; use a name"),
+        ({"walk.axis_mappings.linear-x.axis": "1"}, "'walk': axis is '1'; use a whole number"),
+        ({"walk.axis_mappings.linear-x.scale": "a"}, "'walk': scale is 'a'; use a finite number"),
+        ({"walk.axis_mappings.linear-x.offset": math.nan}, "offset is nan; use a finite number"),
+        ({"walk.axis_mappings.linear-x.index": "a"}, "'walk': index is 'a'; use a whole number"),
+        ({"walk.axis_mappings.linear-z": 5}, "'linear-z': 5}; use a mapping from each field"),
+        ({"walk.axis_mappings.linear-x-y.value": 1}, "'y' is a part of 'x', which has the value"),
         ({"walk.axis_mappings.linear-y.axis": 1}, "Axis mapping for 'walk' must have an offset"),
         ({"walk.axis_mappings.linear-y.speed": 1}, "must have an axis, button, or value"),
         ({"walk.axis_mappings.speed.value": 1.0}, "command 'walk': "),

@@ -59,16 +59,45 @@ def needed(config: Mapping[str, Any], key: str, command: str) -> Any:
     return config[key]
 
 
+def name_in(config: Mapping[str, Any], key: str, command: str) -> str:
+    """Return the name of a topic, service or action.
+
+    Raises:
+        CommandError: It is missing, or no text.
+    """
+    found = needed(config, key, command)
+    if isinstance(found, str):
+        return found
+    raise CommandError(f"command '{command}': '{key}' is {found!r}; use a name")
+
+
+def parts(config: Mapping[str, Any], key: str, command: str) -> dict[str, dict[str, Any]]:
+    """Return the fields of a message and what is said about each.
+
+    Raises:
+        CommandError: They are none.
+    """
+    found = config[key]
+    if isinstance(found, dict) and all(isinstance(each, dict) for each in found.values()):
+        return found
+    raise CommandError(
+        f"command '{command}': '{key}' is {found!r}; use a mapping from each field, such as "
+        "'linear-x', to a mapping"
+    )
+
+
 def indices(config: Mapping[str, Any], key: str, command: str) -> list[int]:
     """Return the numbers of buttons or axes.
 
     Raises:
         CommandError: They are none.
     """
-    found = list(config.get(key, ()))
-    if all(isinstance(each, int) and each >= 0 for each in found):
-        return [int(each) for each in found]
-    raise CommandError(f"command '{command}': '{key}' is {found!r}; use numbers from 0 on")
+    found = config.get(key, [])
+    if isinstance(found, list) and all(type(each) is int and each >= 0 for each in found):
+        return found
+    raise CommandError(
+        f"command '{command}': '{key}' is {found!r}; use numbers from 0 on, in a list"
+    )
 
 
 def message_of(cls: Any, values: Mapping[str, Any], command: str) -> Any:
@@ -84,9 +113,17 @@ def message_of(cls: Any, values: Mapping[str, Any], command: str) -> Any:
 
 
 def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
-    """Set a value in nested values."""
+    """Set a value in nested values.
+
+    Raises:
+        CommandError: It is a part of what has a value already.
+    """
     for name in path[:-1]:
         whole = whole.setdefault(name, {})
+        if not isinstance(whole, dict):
+            raise CommandError(
+                f"'{path[-1]}' is a part of '{name}', which has the value {whole!r}; set only one"
+            )
     whole[path[-1]] = value
 
 
@@ -132,10 +169,10 @@ class MessageCommand(Command):
         self.node = node
         self.kind = interface(needed(config, "interface_type", name), "msg")
         values: dict[str, Any] = {}
-        for target, given in config["message_value"].items():
+        for target, given in parts(config, "message_value", name).items():
             put(values, target.strip("-").split("-"), needed(given, "value", name))
         self.message = message_of(self.kind, values, name)
-        topic = needed(config, "topic_name", name)
+        topic = name_in(config, "topic_name", name)
         self.publisher = node.create_publisher(self.kind, topic, QoSProfile(depth=1))
 
     def run(self, joy: Joy, *, is_new: bool) -> None:
@@ -156,13 +193,13 @@ class AxesCommand(Command):
         super().__init__(name, config, "deadman_")
         self.node = node
         self.kind = interface(needed(config, "interface_type", name), "msg")
-        self.mappings: dict[str, Mapping[str, Any]] = dict(config["axis_mappings"])
+        self.mappings = parts(config, "axis_mappings", name)
         for mapping in self.mappings.values():
             self.check(mapping)
         self.neutral = to_builtins(self.kind())
         self.as_int = {target for target in self.mappings if not self.takes_fraction(target)}
         message_of(self.kind, self.values(Joy()), name)
-        topic = needed(config, "topic_name", name)
+        topic = name_in(config, "topic_name", name)
         self.publisher = node.create_publisher(self.kind, topic, QoSProfile(depth=1))
         self.command: Any = None
         self.leased: LeasedCommands | None = None
@@ -185,6 +222,13 @@ class AxesCommand(Command):
         for key in ("offset", "scale"):
             if "axis" in mapping and key not in mapping:
                 raise CommandError(f"Axis mapping for '{self.name}' must have an {key}")
+        for key in ("axis", "button", "index"):
+            if type(mapping.get(key, 0)) is not int:
+                raise CommandError(f"'{self.name}': {key} is {mapping[key]!r}; use a whole number")
+        for key in ("offset", "scale"):
+            given = mapping.get(key, 0.0)
+            if type(given) not in (int, float) or not math.isfinite(given):
+                raise CommandError(f"'{self.name}': {key} is {given!r}; use a finite number")
         if not 0 <= mapping.get("index", 0) <= MAX_INDEX:
             raise CommandError(f"'{self.name}': index is {mapping['index']}; use 0 to {MAX_INDEX}")
 
@@ -247,8 +291,13 @@ class AxesCommand(Command):
         del is_new
         self.command = None
         if self.is_active:
-            self.command = from_builtins(self.kind, self.values(joy))
-            stamp(self.command, self.node)
+            try:
+                self.command = from_builtins(self.kind, self.values(joy))
+                stamp(self.command, self.node)
+            except AionodeError as error:  # the axes are farther out than a field can hold
+                self.node.get_logger().error(
+                    f"'{self.name}' publishes nothing: {error}", throttle_duration_sec=5.0
+                )
         if self.leased is not None:
             self.leased.repeat()
         elif self.command is not None:
@@ -283,12 +332,12 @@ class CallCommand(Command):
         if config["type"] == "service":
             kind = interface(type_given, "srv")
             self.request = message_of(kind.Request, config.get("service_request", {}), name)
-            client = node.create_client(kind, needed(config, "service_name", name))
+            client = node.create_client(kind, name_in(config, "service_name", name))
             self.is_ready, self.send = client.service_is_ready, client.call_async
         else:
             kind = interface(type_given, "action")
             self.request = message_of(kind.Goal, config.get("action_goal", {}), name)
-            goals = ActionClient(node, kind, needed(config, "action_name", name))
+            goals = ActionClient(node, kind, name_in(config, "action_name", name))
             self.is_ready, self.send = goals.server_is_ready, goals.send_goal_async
 
     def run(self, joy: Joy, *, is_new: bool) -> None:
