@@ -135,6 +135,7 @@ def test_a_turn_is_not_taken_for_a_bias() -> None:
         ((math.nan, 0.0, 1.0), STILL, 0.01),
         (UP, (0.0, math.inf, 0.0), 0.01),
         (UP, STILL, math.nan),
+        (UP, (1e308, 1e308, 1e308), 10.0),
     ],
 )
 def test_numbers_that_are_not_finite_change_nothing(given: Any) -> None:
@@ -144,6 +145,22 @@ def test_numbers_that_are_not_finite_change_nothing(given: Any) -> None:
 
     assert not filter_.update(*given)
     assert filter_.orientation == (1.0, 0.0, 0.0, 0.0)
+
+
+def test_a_field_too_strong_for_numbers_is_no_first_heading() -> None:
+    """It would stay in the estimate forever."""
+    filter_ = ComplementaryFilter()
+
+    assert not filter_.update(tilted(0.4, 0.5), STILL, 0.01, (1.79e308, 1.79e308, 1.79e308))
+    assert filter_.update(UP, STILL, 0.01, NORTH)
+    assert angles(filter_) == pytest.approx(STILL)
+
+
+def test_a_gravity_too_weak_to_be_turned_is_free_fall() -> None:
+    """Half of the smallest number is none, which has no direction."""
+    filter_ = ComplementaryFilter(_world=(0.5, 0.5, 0.5, 0.5))
+
+    assert filter_.update((5e-324, 0.0, 0.0), STILL, 0.01)
 
 
 def test_free_fall_and_a_magnetic_pole_only_leave_the_gyroscopes() -> None:

@@ -82,25 +82,27 @@ class ComplementaryFilter:
         """
         if not all(map(math.isfinite, (*acceleration, *turning, seconds))):
             return False
-        has_gravity = any(acceleration)
         if magnetic is not None and not all(map(math.isfinite, magnetic)):
             magnetic = None
         if self._world is None:
-            if not has_gravity:
+            if not any(acceleration):
                 return False
-            self._world = tilt(acceleration)
+            world = tilt(acceleration)
             if magnetic is not None:
-                self._world = product(self._world, self._to_north(self._world, magnetic))
-            return True
-        if self.estimates_bias:
-            self._estimate_bias(acceleration, turning)
-        world = self._predicted(self._world, turning, seconds)
-        if has_gravity:
-            level = tilt(rotated(acceleration, inverse(world)))
-            world = product(world, blended(level, self._gain(acceleration)))
-        if magnetic is not None:
-            world = product(world, blended(self._to_north(world, magnetic), self.gain_mag))
-        self._world = unit(world)
+                world = product(world, self._to_north(world, magnetic))
+        else:
+            if self.estimates_bias:
+                self._estimate_bias(acceleration, turning)
+            world = self._predicted(self._world, turning, seconds)
+            up = rotated(acceleration, inverse(world))
+            if any(up):  # not in free fall
+                world = product(world, blended(tilt(up), self._gain(acceleration)))
+            if magnetic is not None:
+                world = product(world, blended(self._to_north(world, magnetic), self.gain_mag))
+            world = unit(world)
+        if not all(map(math.isfinite, world)):  # numbers near the largest have no product
+            return False
+        self._world = world
         return True
 
     def _predicted(self, world: Quaternion, turning: Vector, seconds: float) -> Quaternion:
