@@ -298,6 +298,27 @@ def test_the_unscented_filter_needs_points_around_the_estimate() -> None:
         Ukf(alpha=0.0)
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@BOTH
+@pytest.mark.parametrize(("value", "variance"), [(1.0, 1.7e308), (1e300, 1.0)])
+def test_numbers_near_the_largest_end_no_filter(make: Any, value: float, variance: float) -> None:
+    """Others send them; the node then says that it has no estimate, until it is reset."""
+    filter_: Filter = make()
+    for step in range(1, 60):
+        filter_.process(
+            Measurement(
+                "a",
+                step * 100_000_000,
+                np.full(SIZE, value),
+                np.eye(SIZE) * variance,
+                np.ones(SIZE, dtype=bool),
+            )
+        )
+
+    filter_.place(np.zeros(SIZE), np.eye(SIZE), 0)
+    assert filter_.process(measurement(X, 1.0))
+
+
 def test_the_unscented_filter_goes_on_where_rounding_leaves_no_root() -> None:
     """A variance may come out just below zero."""
     filter_ = started(Ukf)

@@ -338,6 +338,8 @@ class Ukf(Filter):
     def around(self) -> Array:
         """Return the points around the estimate, one per row."""
         scaled = self.scale * (self.covariance + self.covariance.T) / 2
+        if not np.isfinite(scaled).all():  # it has no root, and the node says that it is lost
+            return np.full((2 * SIZE + 1, SIZE), math.nan)
         try:
             root = np.linalg.cholesky(scaled)
         except np.linalg.LinAlgError:  # rounded down below 0
