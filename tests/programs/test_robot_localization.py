@@ -275,6 +275,16 @@ async def test_a_relative_sensor_begins_at_zero(robot: Make) -> None:
     assert yaw_of(found.pose.pose.orientation) == pytest.approx(0.3, abs=1e-2)
 
 
+async def test_a_relative_sensor_begins_with_a_pose_of_numbers(robot: Make) -> None:
+    """One that is no number would make all later ones none."""
+    it = await robot(odom0="wheels", odom0_config=uses(0), odom0_relative=True)
+    await it.send("wheels", it.odometry(math.nan))
+    await it.send("wheels", it.odometry(4.0))
+    found = await it.send("wheels", it.odometry(5.0))
+
+    assert found.pose.pose.position.x == pytest.approx(1.0, abs=1e-2)
+
+
 async def test_a_differential_sensor_measures_how_fast_it_moves(robot: Make) -> None:
     """From one pose to the next."""
     it = await robot(odom0="wheels", odom0_config=uses(0, 1, 5), odom0_differential=True)
@@ -561,6 +571,18 @@ async def test_a_pose_in_an_unknown_frame_moves_nobody(
 
     assert found.pose.pose.position.x == 1.0
     assert r"no transform from 'moon\x1b[2J' to 'odom'" in caplog.text
+
+
+async def test_a_pose_that_cannot_be_set_changes_nothing(robot: Make) -> None:
+    """Its stamp, which may be in the future, keeps no measurements out."""
+    it = await robot(odom0="wheels", odom0_config=uses(0))
+    await it.send("wheels", it.odometry(1.0))
+    broken = it.pose(math.nan)
+    broken.header.stamp.sec += 1000
+    await it.send("set_pose", broken)
+    found = await it.send("wheels", it.odometry(2.0))
+
+    assert found.pose.pose.position.x == pytest.approx(2.0, abs=1e-2)
 
 
 async def test_reset_forgets_the_estimate(robot: Make) -> None:

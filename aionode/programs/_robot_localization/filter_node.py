@@ -148,8 +148,6 @@ class FilterNode(SensingNode):
         self.get_logger().info(
             f"Received set_pose request with value {at.x:g}, {at.y:g}, {at.z:g} in '{frame}'"
         )
-        self.forget()
-        self.set_ns = nanoseconds(msg.header.stamp)
         mask = np.ones(SIZE, dtype=bool)
         base = self.frames.base
         sensor = Sensor("set_pose", mask)
@@ -161,6 +159,8 @@ class FilterNode(SensingNode):
                 f"transform from '{frame}' to '{self.frames.world}'"
             )
             return
+        self.forget()
+        self.set_ns = nanoseconds(msg.header.stamp)
         state[POSE] = measurement.values[POSE]
         covariance[POSE, POSE] = measurement.covariance[POSE, POSE]
         self.filter.place(state, covariance, self.now_ns())

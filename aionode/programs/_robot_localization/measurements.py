@@ -187,6 +187,8 @@ class Measuring:
         mask[ORIENTATION] = seen(rotation, mask[ORIENTATION])
         turned_covariance = turned(rotation, covariance)
         move = np.eye(4) if is_turned else to_target
+        if (sensor.is_differential or sensor.is_relative) and not np.isfinite(matrix).all():
+            return None  # later poses are compared with this one
         if sensor.is_differential:
             before = self.previous.get(sensor.name)
             self.previous[sensor.name] = matrix, covariance
