@@ -305,7 +305,7 @@ async def test_a_goal_is_sent_once_for_each_press(desk: Callable[..., Any]) -> N
         ({"walk.axis_mappings.linear-x.offset": math.nan}, "offset is nan; use a finite number"),
         ({"walk.axis_mappings.linear-x.index": "a"}, "'walk': index is 'a'; use a whole number"),
         ({"walk.axis_mappings.linear-z": 5}, "'linear-z': 5}; use a mapping from each field"),
-        ({"walk.axis_mappings.linear-x-y.value": 1}, "'y' is a part of 'x', which has the value"),
+        ({"walk.axis_mappings.linear-x-y.value": 1}, "'linear-x' has a value, and so has a part"),
         ({"walk.axis_mappings.linear-y.axis": 1}, "Axis mapping for 'walk' must have an offset"),
         ({"walk.axis_mappings.linear-y.speed": 1}, "must have an axis, button, or value"),
         ({"walk.axis_mappings.speed.value": 1.0}, "command 'walk': "),

@@ -116,15 +116,17 @@ def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
     """Set a value in nested values.
 
     Raises:
-        CommandError: It is a part of what has a value already.
+        CommandError: A part of it has a value too, or what it is a part of.
     """
-    for name in path[:-1]:
-        whole = whole.setdefault(name, {})
-        if not isinstance(whole, dict):
-            raise CommandError(
-                f"'{path[-1]}' is a part of '{name}', which has the value {whole!r}; set only one"
-            )
-    whole[path[-1]] = value
+    *parents, last = path
+    place: Any = whole
+    for name in parents:
+        place = place.setdefault(name, {}) if isinstance(place, dict) else place
+    if not isinstance(place, dict) or isinstance(place.get(last), dict):
+        raise CommandError(
+            f"'{'-'.join(path)}' has a value, and so has a part of it or the whole; set only one"
+        )
+    place[last] = value
 
 
 class Command:
