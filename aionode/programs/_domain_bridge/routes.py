@@ -20,6 +20,9 @@ __all__ = ["Route", "RouteError", "domain_of", "routes_in"]
 MAX_DOMAIN: Final = 232
 """The highest domain id for which DDS has ports."""
 
+MAX_NUMBER: Final = 2**63 - 1
+"""The longest duration, in nanoseconds."""
+
 POLICIES: Final[dict[str, dict[str, Any]]] = {
     "reliability": {
         "reliable": ReliabilityPolicy.RELIABLE,
@@ -109,7 +112,7 @@ def parsed(node: Any) -> tuple[str | None, list[Route]]:
     """
     if not isinstance(node, yaml.MappingNode):
         raise RouteError("expected a map with 'topics'")
-    whole = {value_of_node(key): value for key, value in node.value}
+    whole = {str(value_of_node(key)): value for key, value in node.value}
     topics = whole.pop("topics", None)
     default = {key: value_of_node(value) for key, value in whole.items()}
     if default.get("mode", "normal") != "normal":
@@ -174,8 +177,8 @@ def policies_in(given: Any) -> dict[str, Any]:
         raise RouteError("expected map value for 'qos'")
     found: dict[str, Any] = {}
     for name, value in given.items():
-        number = value if type(value) is int else None
-        if value in POLICIES.get(name, {}):
+        number = value if type(value) is int and value <= MAX_NUMBER else None
+        if isinstance(value, str) and value in POLICIES.get(name, {}):
             found[name] = POLICIES[name][value]
         elif (name == "depth" and (number or 0) > 0) or (
             name in ("deadline", "lifespan") and (number is not None or value == "auto")
