@@ -463,14 +463,16 @@ async def test_beams_without_an_end_say_nothing(world: Callable[..., Any], range
     assert place_of(it.poses[-1]) == pytest.approx((2.0, 1.5, 0.0), abs=0.1)
 
 
+@pytest.mark.parametrize(("more", "corner"), [(1, 0.0), (0, math.nan), (0, 1e300)])
 async def test_a_map_that_is_none_is_rejected(
-    world: Callable[..., Any], caplog: pytest.LogCaptureFixture
+    world: Callable[..., Any], more: int, corner: float, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The one before stays."""
     it = await world()
     before = it.program.field
     broken = room()
-    broken.info.width += 1
+    broken.info.width += more
+    broken.info.origin.position.x = corner
     it.maps.publish(broken)
     await settle()
 
@@ -485,6 +487,8 @@ async def test_a_map_that_is_none_is_rejected(
         ({"robot_model_type": "snake"}, "robot_model_type is 'snake'; use nav2_amcl::Differential"),
         ({"min_particles": 0}, "min_particles is 0 and max_particles 2000; use numbers above 0"),
         ({"sigma_hit": 0.0}, "sigma_hit is 0.0; use a number above 0"),
+        ({"initial_pose.yaw": math.nan}, "initial_pose.yaw is nan; use a number from -1e+06 to"),
+        ({"transform_tolerance": math.nan}, "transform_tolerance is nan; use seconds from 0 to"),
         ({"alpha3": -1.0}, "alpha1 to alpha5 must be 0 or more"),
     ],
 )

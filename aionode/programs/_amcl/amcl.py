@@ -37,7 +37,10 @@ MOTIONS: Final = {
 MODELS: Final = ("likelihood_field", "likelihood_field_prob")
 MAX_PARTICLES: Final = 100_000
 FARTHEST: Final = 1e6
-"""The highest coordinate and covariance of an initial pose."""
+"""The highest coordinate and covariance of an initial pose, and of the corner of a map."""
+
+LONGEST_SEC: Final = 1e6
+"""The longest time ahead for which a transform is broadcast."""
 
 TELL_SEC: Final = 2.0
 
@@ -162,11 +165,7 @@ class Amcl(LifecycleNode):
                 f"min_particles is {least} and max_particles {most}; use numbers above 0, at most "
                 f"{MAX_PARTICLES}"
             )
-        for name in ("laser_likelihood_max_dist", "sigma_hit", "pf_err", "resample_interval"):
-            if not 0 < self.given(name) < math.inf:
-                raise CommandError(f"{name} is {self.given(name)}; use a number above 0")
-        if any(not 0 <= self.given(f"alpha{number}") < math.inf for number in range(1, 6)):
-            raise CommandError("alpha1 to alpha5 must be 0 or more")
+        self.check_numbers()
         if self.given("do_beamskip"):
             self.get_logger().warning("do_beamskip: beams are not skipped here")
         self.move = MOTIONS[robot]
@@ -190,6 +189,29 @@ class Amcl(LifecycleNode):
             fast=self.given("recovery_alpha_fast"),
         )
         self.is_new = True
+
+    def check_numbers(self) -> None:
+        """Reject numbers that no filter can use.
+
+        Raises:
+            CommandError: A parameter does not fit.
+        """
+        for name in ("laser_likelihood_max_dist", "sigma_hit", "pf_err", "resample_interval"):
+            if not 0 < self.given(name) < math.inf:
+                raise CommandError(f"{name} is {self.given(name)}; use a number above 0")
+        for name in ("x", "y", "z", "yaw"):
+            if not abs(value := self.given(f"initial_pose.{name}")) <= FARTHEST:
+                raise CommandError(
+                    f"initial_pose.{name} is {value}; use a number from {-FARTHEST:g} to "
+                    f"{FARTHEST:g}"
+                )
+        if not 0.0 <= self.given("transform_tolerance") <= LONGEST_SEC:
+            raise CommandError(
+                f"transform_tolerance is {self.given('transform_tolerance')}; use seconds from 0 "
+                f"to {LONGEST_SEC:g}"
+            )
+        if any(not 0 <= self.given(f"alpha{number}") < math.inf for number in range(1, 6)):
+            raise CommandError("alpha1 to alpha5 must be 0 or more")
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:
         """Begin where the robot is known to be, if it is."""
@@ -244,6 +266,8 @@ class Amcl(LifecycleNode):
                 "cause issues with reading published topics"
             )
         is_whole = info.width * info.height == len(grid.data) > 0
+        corner = info.origin.position
+        is_whole &= abs(corner.x) <= FARTHEST and abs(corner.y) <= FARTHEST
         if not is_whole or not 0.0 < info.resolution < math.inf:
             self.get_logger().error("Received map message is malformed. Rejecting.")
             return
@@ -386,10 +410,10 @@ class Amcl(LifecycleNode):
 
     def points_of(self, scan: LaserScan, laser: Array, longest: float) -> Array:
         """Return where the beams end, in the frame of the robot, also of lasers upside down."""
-        ranges = np.asarray(scan.ranges, dtype=float)
-        angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
-        chosen = self.sensor.chosen(len(ranges))
-        ranges, angles = ranges[chosen], angles[chosen]
+        chosen = self.sensor.chosen(len(scan.ranges))
+        ranges = np.asarray(scan.ranges[chosen], dtype=float)
+        numbers = np.arange(*chosen.indices(len(scan.ranges)))
+        angles = scan.angle_min + numbers * scan.angle_increment
         shortest = max(float(scan.range_min), self.given("laser_min_range"))
         used = np.isfinite(ranges) & np.isfinite(angles) & (ranges > shortest) & (ranges < longest)
         ranges, angles = ranges[used], angles[used]
