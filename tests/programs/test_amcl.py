@@ -246,12 +246,20 @@ class World:
     ) -> None:
         """Publish the odometry, and a scan where the robot is."""
         await self.clock.advance(0.1)
+        await self.move(odom)
+        await self.look(x, y, yaw, **more)
+
+    async def move(self, odom: tuple[float, float, float]) -> None:
+        """Publish the odometry."""
         moved = TransformStamped(child_frame_id="base_footprint")
         moved.header.frame_id, moved.header.stamp = "odom", self.stamp()
         moved.transform.translation.x, moved.transform.translation.y = odom[:2]
         moved.transform.rotation = about_z(odom[2])
         self.broadcaster.sendTransform(moved)
         await settle()
+
+    async def look(self, x: float, y: float, yaw: float, **more: Any) -> None:
+        """Publish a scan where the robot is."""
         ranges = ranges_at(x + 0.1 * math.cos(yaw), y + 0.1 * math.sin(yaw), yaw)
         msg = LaserScan(
             angle_min=-math.pi,
@@ -329,6 +337,20 @@ async def test_scans_correct_where_the_robot_is_said_to_be(
     assert place_of(it.poses[-1]) == pytest.approx((2.0, 1.5, 0.3), abs=0.06)
     assert it.poses[-1].pose.covariance[0] < it.poses[0].pose.covariance[0]
     assert len(it.poses) == 15
+
+
+async def test_a_scan_waits_for_the_odometry_of_its_time(world: Callable[..., Any]) -> None:
+    """It is often published a little later."""
+    it = await world()
+    await it.begin(2.0, 1.5, 0.0)
+    await it.move((0.0, 0.0, 0.0))
+    await it.clock.advance(0.1)
+    await it.look(2.0, 1.5, 0.0)
+    assert it.poses == []
+
+    await it.clock.advance(0.1)
+    await it.move((0.0, 0.0, 0.0))
+    assert len(it.poses) == 1
 
 
 async def test_the_transform_corrects_the_odometry(world: Callable[..., Any]) -> None:

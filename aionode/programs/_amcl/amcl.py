@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import Any, Final
 
 import numpy as np
@@ -298,7 +299,7 @@ class Amcl(LifecycleNode):
         """Spread the guesses around a pose, moved by what the robot drove since then."""
         base, odom = self.given("base_frame_id"), self.given("odom_frame_id")
         pose = matrix_of(msg.pose.pose.position, msg.pose.pose.orientation)
-        stamp_ns = max(0, int(msg.header.stamp.sec) * 10**9 + int(msg.header.stamp.nanosec))
+        stamp_ns = stamp_of(msg)
         try:
             found = self.buffer.lookup_transform_full_core(
                 base, Time(nanoseconds=stamp_ns), base, self.get_clock().now(), odom
@@ -344,7 +345,19 @@ class Amcl(LifecycleNode):
 
     # Scans
 
-    def on_scan(self, scan: LaserScan) -> None:
+    async def on_scan(self, scan: LaserScan) -> None:
+        """Use a scan, after the odometry of its time, which may be published later."""
+        if self.is_active and self.field is not None:
+            with suppress(TransformException):  # looked up, and told, below
+                await self.buffer.wait_for_transform(
+                    self.given("odom_frame_id"),
+                    scan.header.frame_id,
+                    Time(nanoseconds=stamp_of(scan)),
+                    timeout_sec=self.given("transform_tolerance"),
+                )
+        self.use(scan)
+
+    def use(self, scan: LaserScan) -> None:
         """Let a scan judge the guesses, if the robot has moved."""
         if not self.is_active:
             return
@@ -352,7 +365,7 @@ class Amcl(LifecycleNode):
             self.warn("Waiting for map....")
             return
         base, odom = self.given("base_frame_id"), self.given("odom_frame_id")
-        stamp_ns = max(0, int(scan.header.stamp.sec) * 10**9 + int(scan.header.stamp.nanosec))
+        stamp_ns = stamp_of(scan)
         try:
             laser = self.looked_up(base, scan.header.frame_id, 0)
             robot = self.looked_up(odom, base, stamp_ns)
@@ -436,7 +449,7 @@ class Amcl(LifecycleNode):
         self.pose = msg
         self.pose_output.publish(msg)
         self.map_to_odom = matrix_of(msg.pose.pose.position, about_z(yaw)) @ np.linalg.inv(robot)
-        self.broadcast(int(scan.header.stamp.sec) * 10**9 + int(scan.header.stamp.nanosec))
+        self.broadcast(stamp_of(scan))
         self.publish_cloud()
 
     def publish_cloud(self) -> None:
@@ -457,7 +470,7 @@ class Amcl(LifecycleNode):
         """Broadcast how far the odometry is off, for some time ahead."""
         if self.map_to_odom is None or not self.given("tf_broadcast"):
             return
-        until = Time(nanoseconds=max(0, stamp_ns)) + Duration(
+        until = Time(nanoseconds=stamp_ns) + Duration(
             nanoseconds=int(self.given("transform_tolerance") * 1e9)
         )
         transform = TransformStamped(child_frame_id=self.given("odom_frame_id"))
@@ -474,6 +487,11 @@ class Amcl(LifecycleNode):
     def warn(self, text: str) -> None:
         """Warn, not at every scan."""
         self.get_logger().warning(escaped(text, one_line=True), throttle_duration_sec=TELL_SEC)
+
+
+def stamp_of(msg: Any) -> int:
+    """Return the stamp of a message in nanoseconds, from 0 on."""
+    return max(0, int(msg.header.stamp.sec) * 10**9 + int(msg.header.stamp.nanosec))
 
 
 def about_z(yaw: float) -> Quaternion:
