@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import Callable
 from typing import Any
@@ -15,7 +16,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.sensor_msgs.msg import Joy
 from aionode.interfaces.std_msgs.msg import Int8, String, UInt8MultiArray
-from aionode.programs._joy.joy_teleop import JoyTeleop
+from aionode.programs._joy.joy_teleop import MAX_UNANSWERED, JoyTeleop
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
 
@@ -285,6 +286,36 @@ async def test_a_goal_is_sent_once_for_each_press(desk: Callable[..., Any]) -> N
         await it.press(button)
 
     assert orders == [5, 5]
+
+
+async def test_only_so_many_requests_wait_for_a_server_that_hangs(
+    desk: Callable[..., Any], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Somebody could fill the memory otherwise."""
+    it = await desk(
+        **{
+            "add.type": "service",
+            "add.interface_type": "example_interfaces/srv/AddTwoInts",
+            "add.service_name": "add",
+            "add.buttons": [0],
+        }
+    )
+    asked: list[Any] = []
+
+    async def hang(request: Any, response: Any) -> Any:
+        asked.append(request)
+        await asyncio.Event().wait()
+        return response
+
+    it.node.create_service(AddTwoInts, "add", hang, concurrent=True)
+    await settle()
+    await it.clock.advance(10.0)  # the warnings are throttled
+    for _ in range(MAX_UNANSWERED + 2):
+        await it.press(1)
+        await it.press(0)
+
+    assert len(asked) == MAX_UNANSWERED
+    assert f"'add' is not sent: {MAX_UNANSWERED} requests wait" in caplog.text
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
@@ -21,6 +22,9 @@ __all__ = ["JoyTeleop", "main"]
 START_SEC: Final = 0.01
 MAX_INDEX: Final = 10_000
 """The highest index in a list that an axis may set."""
+
+MAX_UNANSWERED: Final = 100
+"""The requests of a command that may wait for their answers; more presses send none."""
 
 MOTION: Final = frozenset(
     {
@@ -327,9 +331,11 @@ class CallCommand(Command):
 
     def __init__(self, name: str, config: Mapping[str, Any], node: Node) -> None:
         super().__init__(name, config)
+        self.node = node
         self.was_ready = False
+        self.unanswered: set[asyncio.Future[Any]] = set()
         self.is_ready: Callable[[], bool]
-        self.send: Callable[[Any], object]
+        self.send: Callable[[Any], asyncio.Future[Any]]
         type_given = needed(config, "interface_type", name)
         if config["type"] == "service":
             kind = interface(type_given, "srv")
@@ -348,8 +354,17 @@ class CallCommand(Command):
         if not self.is_active:
             return
         was_ready, self.was_ready = self.was_ready, self.is_ready()
-        if self.was_ready and (is_new or not was_ready):
-            self.send(self.request)
+        if not self.was_ready or (was_ready and not is_new):
+            return
+        if len(self.unanswered) >= MAX_UNANSWERED:
+            self.node.get_logger().warning(
+                f"'{self.name}' is not sent: {MAX_UNANSWERED} requests wait for their answers",
+                throttle_duration_sec=5.0,
+            )
+            return
+        answer = self.send(self.request)
+        self.unanswered.add(answer)
+        answer.add_done_callback(self.unanswered.discard)
 
 
 def stamp(message: Any, node: Node) -> None:
