@@ -35,6 +35,7 @@ CHECKS: Final = 5
 """The number of checks in a row that must find a publisher: others may follow the first one."""
 
 MAX_GIDS: Final = 1000
+MAX_WARNINGS: Final = 10
 
 
 class Bridge:
@@ -57,7 +58,7 @@ class Bridge:
         self.input: Subscription[bytes] | None = None
         self.seen = 0
         self.own: dict[bytes, bool] = {}
-        self.warned = ""
+        self.warned: set[str] = set()
 
     async def check(self) -> None:
         """Create the bridge, or remove it, as publishers and subscriptions come and go."""
@@ -149,10 +150,10 @@ class Bridge:
         return QoSProfile(**{"depth": 10} | given)
 
     def warn(self, text: str) -> None:
-        """Warn, unless that was the last warning."""
-        if text != self.warned:
+        """Warn once of each of the first problems; a check repeats them ten times a second."""
+        if text not in self.warned and len(self.warned) < MAX_WARNINGS:
+            self.warned.add(text)
             self.source.get_logger().warning(escaped(text, one_line=True))
-        self.warned = text
 
 
 def is_of(endpoint: Any, node: Node) -> bool:
