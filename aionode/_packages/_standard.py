@@ -22,6 +22,7 @@ SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
 """The folder with the data, such as launch files, of the packages whose programs aionode has."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "ackermann_mux": {"ackermann_mux": "_command_mux.ackermann_mux"},
     "controller_manager": {
         "hardware_spawner": "_ros2_control.hardware_spawner",
         "ros2_control_node": "_ros2_control.manager",
@@ -84,7 +85,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "turtle_teleop_key": "_turtlesim.teleop_key",
         "turtlesim_node": "_turtlesim.node",
     },
-    "twist_mux": {"twist_mux": "_twist_mux"},
+    "twist_mux": {"twist_mux": "_command_mux.twist_mux"},
     "urdf_launch": {},
     "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
     "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},

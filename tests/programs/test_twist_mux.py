@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +12,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from aionode.interfaces.std_msgs.msg import Bool
-from aionode.programs._twist_mux import TwistMux
+from aionode.programs._command_mux.twist_mux import TwistMux
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
 
@@ -157,6 +158,7 @@ async def test_diagnostics_say_who_is_heard(
             1.5,
             "priority' is 1.5; its type has to be int",
         ),
+        ("topics.joystick.timeout", math.nan, "timeout' is nan; it has to be a finite number"),
     ],
 )
 async def test_parameters_that_do_not_fit_are_named(

@@ -1,20 +1,18 @@
-"""``twist_mux``: of several command sources for a base, the one with the highest priority wins."""
+"""Of several sources of commands for a base, the one with the highest priority wins."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, Final
 
-import aionode
 from aionode import Node
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
-from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import Bool
 from aionode.programs._wall_timer import create_wall_timer
 
-__all__ = ["Source", "TwistMux", "main"]
+__all__ = ["CommandMux"]
 
 DIAGNOSTICS_SEC: Final = 1.0
 
@@ -57,30 +55,38 @@ class Source:
         return self.has_expired or self.is_set
 
 
-class TwistMux(Node):
-    """Publishes the commands of the source with the highest priority on `cmd_vel_out`.
+class CommandMux(Node):
+    """Publishes the commands of the source with the highest priority.
 
     The parameters ``topics.NAME.topic``, ``.timeout`` and ``.priority`` define command sources,
     those below ``locks`` locks.
+
+    Args:
+        name: The name of the node.
+        title: What its diagnostics call it.
 
     Raises:
         CommandError: A parameter is missing or invalid.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, name: str, title: str) -> None:
         super().__init__(
-            "twist_mux",
+            name,
             allow_undeclared_parameters=True,
             automatically_declare_parameters_from_overrides=True,
         )
-        if not self.has_parameter("use_stamped"):
-            # Humble's twist_mux, 4.3, only knows Twist; since 4.4 TwistStamped is the default.
-            is_stamped = self.context.ros_distro != "humble"
-            self.declare_parameter("use_stamped", is_stamped, ParameterDescriptor())
-        kind: Any = TwistStamped if self.get_parameter("use_stamped").value else Twist
+        self.title = title
         self.commands = self.sources("topics")
         self.locks = self.sources("locks")
-        self.output = self.create_publisher(kind, "cmd_vel_out", 1)
+
+    def connect(self, kind: Any, output: str) -> None:
+        """Create the publishers, subscriptions and timer.
+
+        Args:
+            kind: The type of the commands.
+            output: The topic of those that win.
+        """
+        self.output = self.create_publisher(kind, output, 1)
         self.diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 1)
         for source in self.commands:
             self.create_subscription(kind, source.topic, self.commanding(source), 10)
@@ -109,6 +115,11 @@ class TwistMux(Node):
                         f"parameter '{prefix}.{name}.{part}' is {value!r}; "
                         f"its type has to be {kind.__name__}"
                     )
+                if isinstance(value, float) and not math.isfinite(value):
+                    raise CommandError(
+                        f"parameter '{prefix}.{name}.{part}' is {value}; it has to be a finite "
+                        "number of seconds, or 0 for a message that stays valid"
+                    )
                 values.append(value)
             topic, timeout, priority = values
             found.append(Source(f"{prefix}.{name}", topic, timeout, priority, self.now_ns))
@@ -126,10 +137,10 @@ class TwistMux(Node):
     def commanding(self, source: Source) -> Callable[[Any], None]:
         """Return the callback for the commands of a source."""
 
-        def on_command(twist: Any) -> None:
+        def on_command(command: Any) -> None:
             source.hear(is_set=True)
             if self.leader() is source:
-                self.output.publish(twist)
+                self.output.publish(command)
 
         return on_command
 
@@ -174,7 +185,7 @@ class TwistMux(Node):
         values["current source"] = "none" if leader is None else leader.name
         status = DiagnosticStatus(
             level=DiagnosticStatus.OK,
-            name=f"{self.get_name()}: Twist mux status",
+            name=f"{self.get_name()}: {self.title} status",
             message="ok",
             hardware_id="none",
             values=[KeyValue(key=key, value=value) for key, value in values.items()],
@@ -182,8 +193,3 @@ class TwistMux(Node):
         msg = DiagnosticArray(status=[status])
         msg.header.stamp = self.get_clock().now().to_msg()
         self.diagnostics.publish(msg)
-
-
-def main() -> None:
-    """Run the node until Ctrl-C."""
-    aionode.run(TwistMux)

@@ -1,0 +1,1 @@
+"""twist_mux and ackermann_mux: of several sources of commands, one is heard."""
