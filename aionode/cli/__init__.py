@@ -42,8 +42,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         else:
             module = None
         if module is None:
-            from aionode.cli import _main
+            from aionode._process.imports import uncollected
 
+            with uncollected():
+                from aionode.cli import _main
             status = _main.main(argv)
             # Only if this is the process's main program, and not after `run`, whose threads are the
             # user's: otherwise Python would wait for threads and exit handlers after the answer is

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from aionode._process.imports import uncollected
 from aionode._process.streams import discard, open_missing
 from aionode.cli._support.error_text import limited, one_line
 from aionode.cli._support.exit import INTERRUPTED, OWN_PROCESS, status_of
@@ -72,7 +73,8 @@ class LateGroup(click.Group):
         """Import a noun and return its command."""
         if cmd_name not in NOUNS:
             return None
-        module = importlib.import_module(f"aionode.cli._nouns.{cmd_name}")
+        with uncollected():
+            module = importlib.import_module(f"aionode.cli._nouns.{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
 

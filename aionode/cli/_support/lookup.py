@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import CommandError, InterfaceNotFoundError
@@ -103,6 +102,8 @@ def likeness(name: str, other: str) -> float:
     long namespace, or a last part shared by many names such as ``get_parameters``, from making
     different names similar.
     """
+    import difflib  # only for an error text
+
     pairs = zip(parts(name), parts(other), strict=False)
     return min(difflib.SequenceMatcher(None, *pair).ratio() for pair in pairs)
 

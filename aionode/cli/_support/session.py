@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from aionode._distribution import other_distribution
+from aionode._process.imports import uncollected
 from aionode.cli._support.error_text import one_line
 from aionode.cli._support.exit import INTERRUPTED, owns_process, status_of
 from aionode.cli._support.output import Output
@@ -98,8 +99,9 @@ def run_verb(
         AionodeError: the verb failed.
     """
     # Imported when a command runs; its help does not need it.
-    from aionode.cli._support.deadline import Deadline
-    from aionode.runner import best_loop_factory
+    with uncollected():
+        from aionode.cli._support.deadline import Deadline
+        from aionode.runner import best_loop_factory
 
     output = Output(json=json)
     stopped_status = 0 if endless else INTERRUPTED

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import math
-import shutil
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -196,6 +195,8 @@ def warn_of_dropped(subscriptions: Sequence[Subscription[Any]], output: Output) 
 
 def picture(lines: Sequence[Line], window: float, end_ns: int, width: int) -> list[tuple[str, str]]:
     """Return the chart of the last seconds for a terminal."""
+    import shutil  # loads three compressors
+
     height = min(shutil.get_terminal_size().lines - 2, ROWS)
     start_ns = end_ns - int(window * 1e9)
     return chart(lines, width=width, height=height, start_ns=start_ns, end_ns=end_ns)

@@ -389,6 +389,9 @@ def addresses_of(endpoint: str) -> Iterator[Address]:
     """Yield the addresses of an endpoint, which may name its host."""
     where = split_locator(endpoint)
     if where is not None:
+        host, port = where
+        # Given text, Python would load its tables of internationalized names.
+        name = host.encode() if host.isascii() else host
         with suppress(OSError):
-            for family, *_, address in socket.getaddrinfo(*where, type=socket.SOCK_STREAM):
+            for family, *_, address in socket.getaddrinfo(name, port, type=socket.SOCK_STREAM):
                 yield socket.inet_pton(family, str(address[0]).partition("%")[0]), int(address[1])
