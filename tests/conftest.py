@@ -93,6 +93,7 @@ BOTH_LOOPS = (
     "tests/node/test_threads.py",
     "tests/end_to_end/",
     "tests/process/test_concurrency.py",
+    "tests/programs/test_serial.py",
     "tests/engine/test_context.py",
     "tests/test_runner.py",
     "tests/testing/",
