@@ -7,19 +7,53 @@ from typing import Annotated, ClassVar
 
 from aionode.interfaces.geometry_msgs.msg import Pose
 from aionode.interfaces.std_msgs.msg import Header
-from aionode.message import DEFAULT, Bytes, Message, Sequence, float64, int32, uint8
+from aionode.message import (
+    DEFAULT,
+    Bytes,
+    Ints,
+    Message,
+    Sequence,
+    float32,
+    float64,
+    int32,
+    uint8,
+    uint32,
+)
 
 __all__ = [
+    "BagfileProgress",
+    "HistogramBucket",
     "LandmarkEntry",
     "LandmarkList",
-    "SensorTopics",
+    "Metric",
+    "MetricFamily",
+    "MetricLabel",
     "StatusCode",
     "StatusResponse",
     "SubmapEntry",
     "SubmapList",
     "SubmapTexture",
-    "TrajectoryOptions",
+    "TrajectoryStates",
 ]
+
+
+class BagfileProgress(Message, typename="cartographer_ros_msgs/msg/BagfileProgress"):
+    """BagfileProgress, as Cartographer defines it."""
+
+    current_bagfile_name: str = ""
+    current_bagfile_id: uint32 = 0
+    total_bagfiles: uint32 = 0
+    total_messages: uint32 = 0
+    processed_messages: uint32 = 0
+    total_seconds: float32 = 0.0
+    processed_seconds: float32 = 0.0
+
+
+class HistogramBucket(Message, typename="cartographer_ros_msgs/msg/HistogramBucket"):
+    """HistogramBucket, as Cartographer defines it."""
+
+    bucket_boundary: float64 = 0.0
+    count: float64 = 0.0
 
 
 class LandmarkEntry(Message, typename="cartographer_ros_msgs/msg/LandmarkEntry"):
@@ -35,19 +69,35 @@ class LandmarkList(Message, typename="cartographer_ros_msgs/msg/LandmarkList"):
     """LandmarkList, as Cartographer defines it."""
 
     header: Header = DEFAULT
-    landmark: Annotated[list[LandmarkEntry], Sequence[LandmarkEntry]] = DEFAULT
+    landmarks: Annotated[list[LandmarkEntry], Sequence[LandmarkEntry]] = DEFAULT
 
 
-class SensorTopics(Message, typename="cartographer_ros_msgs/msg/SensorTopics"):
-    """SensorTopics, as Cartographer defines it."""
+class MetricLabel(Message, typename="cartographer_ros_msgs/msg/MetricLabel"):
+    """MetricLabel, as Cartographer defines it."""
 
-    laser_scan_topic: str = ""
-    multi_echo_laser_scan_topic: str = ""
-    point_cloud2_topic: str = ""
-    imu_topic: str = ""
-    odometry_topic: str = ""
-    nav_sat_fix_topic: str = ""
-    landmark_topic: str = ""
+    key: str = ""
+    value: str = ""
+
+
+class Metric(Message, typename="cartographer_ros_msgs/msg/Metric"):
+    """Metric, as Cartographer defines it."""
+
+    TYPE_COUNTER: ClassVar[uint8] = 0
+    TYPE_GAUGE: ClassVar[uint8] = 1
+    TYPE_HISTOGRAM: ClassVar[uint8] = 2
+
+    type: uint8 = 0
+    labels: Annotated[list[MetricLabel], Sequence[MetricLabel]] = DEFAULT
+    value: float64 = 0.0
+    counts_by_bucket: Annotated[list[HistogramBucket], Sequence[HistogramBucket]] = DEFAULT
+
+
+class MetricFamily(Message, typename="cartographer_ros_msgs/msg/MetricFamily"):
+    """MetricFamily, as Cartographer defines it."""
+
+    name: str = ""
+    description: str = ""
+    metrics: Annotated[list[Metric], Sequence[Metric]] = DEFAULT
 
 
 class StatusCode(Message, typename="cartographer_ros_msgs/msg/StatusCode"):
@@ -85,6 +135,7 @@ class SubmapEntry(Message, typename="cartographer_ros_msgs/msg/SubmapEntry"):
     submap_index: int32 = 0
     submap_version: int32 = 0
     pose: Pose = DEFAULT
+    is_frozen: bool = False
 
 
 class SubmapList(Message, typename="cartographer_ros_msgs/msg/SubmapList"):
@@ -104,24 +155,14 @@ class SubmapTexture(Message, typename="cartographer_ros_msgs/msg/SubmapTexture")
     slice_pose: Pose = DEFAULT
 
 
-class TrajectoryOptions(Message, typename="cartographer_ros_msgs/msg/TrajectoryOptions"):
-    """TrajectoryOptions, as Cartographer defines it."""
+class TrajectoryStates(Message, typename="cartographer_ros_msgs/msg/TrajectoryStates"):
+    """TrajectoryStates, as Cartographer defines it."""
 
-    tracking_frame: str = ""
-    published_frame: str = ""
-    odom_frame: str = ""
-    provide_odom_frame: bool = False
-    use_odometry: bool = False
-    use_nav_sat: bool = False
-    use_landmarks: bool = False
-    publish_frame_projected_to_2d: bool = False
-    num_laser_scans: int32 = 0
-    num_multi_echo_laser_scans: int32 = 0
-    num_subdivisions_per_laser_scan: int32 = 0
-    num_point_clouds: int32 = 0
-    rangefinder_sampling_ratio: float64 = 0.0
-    odometry_sampling_ratio: float64 = 0.0
-    fixed_frame_pose_sampling_ratio: float64 = 0.0
-    imu_sampling_ratio: float64 = 0.0
-    landmarks_sampling_ratio: float64 = 0.0
-    trajectory_builder_options_proto: str = ""
+    ACTIVE: ClassVar[uint8] = 0
+    FINISHED: ClassVar[uint8] = 1
+    FROZEN: ClassVar[uint8] = 2
+    DELETED: ClassVar[uint8] = 3
+
+    header: Header = DEFAULT
+    trajectory_id: Annotated[Ints, Sequence[int32]] = DEFAULT
+    trajectory_state: Annotated[Bytes, Sequence[uint8]] = DEFAULT
