@@ -74,7 +74,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "static_transform_publisher": "_static_transform_publisher",
     },
     "topic_tools": {
-        name: f"_{name}"
+        name: f"_topic_tools.{name}"
         for name in (
             *("delay", "demux", "drop", "mux", "relay", "relay_field", "throttle", "transform"),
         )
@@ -137,7 +137,7 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
         )
     },
     "topic_tools": {
-        f"topic_tools::{name}Node": (f"_{name.lower()}:{name}", name.lower())
+        f"topic_tools::{name}Node": (f"_topic_tools.{name.lower()}:{name}", name.lower())
         for name in ("Delay", "Demux", "Drop", "Mux", "Relay", "Throttle")
     },
     "usb_cam": {"usb_cam::UsbCamNode": ("_camera.usb_cam_node:UsbCam", "usb_cam")},

@@ -224,7 +224,7 @@ def test_of_a_container_the_nodes_stay_that_aionode_has(files: Files) -> None:
     plugins = [each["plugin"] for each in found if "plugin" in each]
     assert plugins == [
         "aionode.programs._joy.joy_node:JoyNode",
-        "aionode.programs._relay:Relay",
+        "aionode.programs._topic_tools.relay:Relay",
     ]
     (log,) = (each["log"] for each in found if "log" in each)
     assert log.startswith("package 'image_proc' is missing: it is a set of image processing")
@@ -261,7 +261,7 @@ def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) ->
 
     assert [each["plugin"] for each in found if "plugin" in each] == [
         "aionode.programs._joy.joy_node:JoyNode",
-        "aionode.programs._relay:Relay",
+        "aionode.programs._topic_tools.relay:Relay",
     ]
     assert not any("argv" in each for each in found)
 

@@ -15,8 +15,8 @@ from aionode.interfaces.turtlesim.msg import Pose
 from aionode.programs._command_mux.twist_mux import TwistMux
 from aionode.programs._diagnostics.aggregator_node import Aggregator
 from aionode.programs._lifecycle_manager import Manager
-from aionode.programs._relay import Relay
 from aionode.programs._teleop_twist_keyboard import Teleop
+from aionode.programs._topic_tools.relay import Relay
 from aionode.programs._turtlesim.node import TurtleSim
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start

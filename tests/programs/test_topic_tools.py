@@ -11,16 +11,16 @@ from aionode import Node
 from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_msgs.msg import Float64, Header, String
-from aionode.programs._delay import Delay
-from aionode.programs._demux import SERVICES as DEMUX_SERVICES
-from aionode.programs._demux import Demux
-from aionode.programs._drop import Drop
-from aionode.programs._mux import SERVICES, Mux
-from aionode.programs._relay import Relay
-from aionode.programs._relay_field import RelayField
-from aionode.programs._relay_field import parser as relay_field_parser
-from aionode.programs._throttle import Throttle
-from aionode.programs._transform import Transform, chosen_qos, parser
+from aionode.programs._topic_tools.delay import Delay
+from aionode.programs._topic_tools.demux import SERVICES as DEMUX_SERVICES
+from aionode.programs._topic_tools.demux import Demux
+from aionode.programs._topic_tools.drop import Drop
+from aionode.programs._topic_tools.mux import SERVICES, Mux
+from aionode.programs._topic_tools.relay import Relay
+from aionode.programs._topic_tools.relay_field import RelayField
+from aionode.programs._topic_tools.relay_field import parser as relay_field_parser
+from aionode.programs._topic_tools.throttle import Throttle
+from aionode.programs._topic_tools.transform import Transform, chosen_qos, parser
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
@@ -228,7 +228,7 @@ async def test_mux_publishes_the_input_that_is_selected(
     assert not (await ask("select", topic="three")).success
     assert (await ask("add", topic="three")).success
     assert not (await ask("add", topic="three")).success
-    monkeypatch.setattr("aionode.programs._mux.MAX_TOPICS", 3)
+    monkeypatch.setattr("aionode.programs._topic_tools.mux.MAX_TOPICS", 3)
     assert not (await ask("add", topic="four")).success
     assert (await ask("delete", topic="one")).success
     assert list((await ask("list")).topics) == ["two", "three"]

@@ -6,7 +6,7 @@ import sys
 
 import aionode
 from aionode.arguments import remove_ros_args
-from aionode.programs._any_type import AnyTypeNode
+from aionode.programs._topic_tools.any_type import AnyTypeNode
 
 __all__ = ["Relay", "main"]
 

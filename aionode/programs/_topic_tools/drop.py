@@ -7,7 +7,7 @@ import sys
 import aionode
 from aionode import Parameter
 from aionode.arguments import remove_ros_args
-from aionode.programs._any_type import AnyTypeNode, given_number
+from aionode.programs._topic_tools.any_type import AnyTypeNode, given_number
 
 __all__ = ["Drop", "main"]
 

@@ -11,7 +11,7 @@ from aionode import Parameter
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
 from aionode.idl import define
-from aionode.programs._any_type import AnyTypeNode
+from aionode.programs._topic_tools.any_type import AnyTypeNode
 
 __all__ = ["SERVICES", "Mux", "Selector", "main", "run_selector", "services_of"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from aionode.programs._mux import Selector, run_selector, services_of
+from aionode.programs._topic_tools.mux import Selector, run_selector, services_of
 
 __all__ = ["SERVICES", "Demux", "main"]
 

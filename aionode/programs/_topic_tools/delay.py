@@ -8,7 +8,7 @@ from collections import deque
 import aionode
 from aionode import Clock, ClockType, Timer
 from aionode.arguments import remove_ros_args
-from aionode.programs._any_type import AnyTypeNode, given_number
+from aionode.programs._topic_tools.any_type import AnyTypeNode, given_number
 
 __all__ = ["MOST_BYTES", "Delay", "main"]
 

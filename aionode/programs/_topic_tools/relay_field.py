@@ -14,7 +14,7 @@ import aionode
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
 from aionode.message import Message, from_builtins, to_builtins
-from aionode.programs._transform import Transform, add_qos
+from aionode.programs._topic_tools.transform import Transform, add_qos
 
 __all__ = ["RelayField", "main", "parser"]
 

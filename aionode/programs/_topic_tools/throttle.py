@@ -9,7 +9,7 @@ import aionode
 from aionode import Clock, ClockType, Parameter
 from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
-from aionode.programs._any_type import AnyTypeNode, given_number
+from aionode.programs._topic_tools.any_type import AnyTypeNode, given_number
 
 __all__ = ["Throttle", "main"]
 

@@ -1,0 +1,1 @@
+"""``topic_tools``: programs that republish topics of any type."""
