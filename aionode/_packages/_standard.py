@@ -89,6 +89,10 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "urdf_launch": {},
     "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
     "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},
+    "vesc_ackermann": {
+        "ackermann_to_vesc_node": "_vesc.ackermann_to_vesc_node",
+        "vesc_to_odom_node": "_vesc.vesc_to_odom_node",
+    },
 }
 """The module of `aionode.programs` for an executable, by package and name.
 
@@ -143,6 +147,13 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
     "usb_cam": {"usb_cam::UsbCamNode": ("_camera.usb_cam_node:UsbCam", "usb_cam")},
     "v4l2_camera": {
         "v4l2_camera::V4L2Camera": ("_camera.v4l2_camera_node:V4L2Camera", "v4l2_camera")
+    },
+    "vesc_ackermann": {
+        "vesc_ackermann::AckermannToVesc": (
+            "_vesc.ackermann_to_vesc_node:AckermannToVesc",
+            "ackermann_to_vesc_node",
+        ),
+        "vesc_ackermann::VescToOdom": ("_vesc.vesc_to_odom_node:VescToOdom", "vesc_to_odom_node"),
     },
 }
 """The node class of `aionode.programs` that is a plugin for containers, by package and name.
