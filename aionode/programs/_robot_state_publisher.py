@@ -15,6 +15,7 @@ from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Header, String
 from aionode.parameter import QoSOverridingOptions
+from aionode.programs._stamps import nanoseconds
 from aionode.programs._urdf import Joint, Robot
 from aionode.qos import qos_profile_sensor_data
 from aionode.tf import StaticTransformBroadcaster, TransformBroadcaster
@@ -135,7 +136,7 @@ class RobotStatePublisher(Node):
             self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
             self.published.clear()
         self.called = now
-        stamp = state.header.stamp.sec * 10**9 + state.header.stamp.nanosec
+        stamp = nanoseconds(state.header.stamp)
         known = [name for name in state.name if name in self.robot.joints]
         last = min([now, *(self.published.get(name, 0) for name in known)])
         frequency = self.get_parameter("publish_frequency").value

@@ -8,6 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from aionode.programs._poses import (
+    matrix_of,
+    quaternion_of,
+    wrapped,
+)
 from aionode.programs._robot_localization.kalman import (
     NAMES,
     SIZE,
@@ -18,11 +23,6 @@ from aionode.programs._robot_localization.kalman import (
     Ukf,
     jacobian,
     transfer,
-)
-from aionode.programs._robot_localization.rotation import (
-    matrix_of,
-    quaternion_of,
-    wrapped,
 )
 from aionode.tf.apply import angles_of
 

@@ -26,9 +26,9 @@ from aionode.interfaces.robot_localization.srv import SetPose, ToggleFilterProce
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.interfaces.tf2_msgs.msg import TFMessage
+from aionode.programs._poses import quaternion_of
 from aionode.programs._robot_localization.ekf_node import EkfNode
 from aionode.programs._robot_localization.filter_node import FilterNode
-from aionode.programs._robot_localization.rotation import quaternion_of
 from aionode.programs._robot_localization.sensors import MAX_QUEUED
 from aionode.programs._robot_localization.ukf_node import UkfNode
 from aionode.testing import ManualClock, settle

@@ -24,8 +24,10 @@ from aionode.interfaces.nav_msgs.msg import OccupancyGrid
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
-from aionode.programs._amcl.likelihood import Array, Field, Sensor
-from aionode.programs._amcl.particles import Particles, moved_differentially, moved_sideways, turn
+from aionode.programs._amcl.likelihood import Field, Sensor
+from aionode.programs._amcl.particles import Particles, moved_differentially, moved_sideways
+from aionode.programs._poses import Array, pose_matrix, wrapped
+from aionode.programs._stamps import nanoseconds
 from aionode.qos import qos_profile_sensor_data
 from aionode.tf import Buffer, TransformBroadcaster, rotation_matrix
 
@@ -298,13 +300,13 @@ class Amcl(LifecycleNode):
     def place(self, msg: PoseWithCovarianceStamped) -> None:
         """Spread the guesses around a pose, moved by what the robot drove since then."""
         base, odom = self.given("base_frame_id"), self.given("odom_frame_id")
-        pose = matrix_of(msg.pose.pose.position, msg.pose.pose.orientation)
+        pose = pose_matrix(msg.pose.pose.position, msg.pose.pose.orientation)
         stamp_ns = stamp_of(msg)
         try:
             found = self.buffer.lookup_transform_full_core(
                 base, Time(nanoseconds=stamp_ns), base, self.get_clock().now(), odom
             ).transform
-            pose = pose @ matrix_of(found.translation, found.rotation)
+            pose = pose @ pose_matrix(found.translation, found.rotation)
         except TransformException as error:
             if self.map_to_odom is not None:
                 self.get_logger().warning(f"Failed to transform initial pose in time ({error})")
@@ -374,7 +376,7 @@ class Amcl(LifecycleNode):
             return
         pose = np.array([robot[0, 3], robot[1, 3], math.atan2(robot[1, 0], robot[0, 0])])
         delta = pose - self.last
-        delta[2] = turn(delta[2])
+        delta[2] = wrapped(delta[2])
         least = self.given("update_min_d"), self.given("update_min_d"), self.given("update_min_a")
         is_due = self.is_new or self.is_forced or bool((np.abs(delta) > least).any())
         if is_due and not self.is_known:
@@ -391,7 +393,7 @@ class Amcl(LifecycleNode):
     def looked_up(self, target: str, source: str, time_ns: int) -> Array:
         """Return the matrix from a frame to another; at 0, the latest."""
         found = self.buffer.lookup_transform_core(target, source, Time(nanoseconds=time_ns))
-        return matrix_of(found.transform.translation, found.transform.rotation)
+        return pose_matrix(found.transform.translation, found.transform.rotation)
 
     def judge(self, scan: LaserScan, laser: Array, delta: Array) -> bool:
         """Move the guesses, weigh them by a scan and draw them anew; return whether it fits."""
@@ -448,7 +450,7 @@ class Amcl(LifecycleNode):
         msg.pose.covariance = covariance.reshape(-1)
         self.pose = msg
         self.pose_output.publish(msg)
-        self.map_to_odom = matrix_of(msg.pose.pose.position, about_z(yaw)) @ np.linalg.inv(robot)
+        self.map_to_odom = pose_matrix(msg.pose.pose.position, about_z(yaw)) @ np.linalg.inv(robot)
         self.broadcast(stamp_of(scan))
         self.publish_cloud()
 
@@ -491,7 +493,7 @@ class Amcl(LifecycleNode):
 
 def stamp_of(msg: Any) -> int:
     """Return the stamp of a message in nanoseconds, from 0 on."""
-    return max(0, int(msg.header.stamp.sec) * 10**9 + int(msg.header.stamp.nanosec))
+    return max(0, nanoseconds(msg.header.stamp))
 
 
 def about_z(yaw: float) -> Quaternion:
@@ -503,14 +505,6 @@ def yaw_of(rotation: Quaternion) -> float:
     """Return the angle about the vertical."""
     matrix = rotation_matrix(rotation)
     return math.atan2(matrix[1][0], matrix[0][0])
-
-
-def matrix_of(place: Any, rotation: Quaternion) -> Array:
-    """Return a pose as a matrix."""
-    result = np.eye(4)
-    result[:3, :3] = rotation_matrix(rotation)
-    result[:3, 3] = place.x, place.y, place.z
-    return result
 
 
 def main() -> None:

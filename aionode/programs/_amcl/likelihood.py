@@ -9,9 +9,9 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Array", "Field", "Sensor"]
+from aionode.programs._poses import Array
 
-Array = npt.NDArray[np.float64]
+__all__ = ["Field", "Sensor"]
 
 OCCUPIED: Final = 100
 FREE: Final = 0

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from aionode.programs._amcl.likelihood import Array
+from aionode.programs._poses import Array, wrapped
 
 __all__ = ["Estimate", "Particles", "moved_differentially", "moved_sideways"]
 
@@ -21,11 +21,6 @@ Bins = npt.NDArray[np.int64]
 
 NO_WAY: Final = 0.01
 """A shorter way has no direction."""
-
-
-def turn(angle: Array | float) -> Array:
-    """Return angles between -π and π."""
-    return np.arctan2(np.sin(angle), np.cos(angle))
 
 
 @dataclass(frozen=True)
@@ -202,11 +197,12 @@ def moved_differentially(
         random: The source of chance.
     """
     way = math.hypot(delta[0], delta[1])
-    first = 0.0 if way < NO_WAY else float(turn(math.atan2(delta[1], delta[0]) - before[2]))
-    last = float(turn(delta[2] - first))
+    first = 0.0 if way < NO_WAY else float(wrapped(math.atan2(delta[1], delta[0]) - before[2]))
+    last = float(wrapped(delta[2] - first))
     # Driving backwards is no turn by half a circle.
     first_size, last_size = (
-        min(abs(float(turn(each))), abs(float(turn(each - math.pi)))) for each in (first, last)
+        min(abs(float(wrapped(each))), abs(float(wrapped(each - math.pi))))
+        for each in (first, last)
     )
     count = len(poses)
 
@@ -219,7 +215,7 @@ def moved_differentially(
     last_turn = last - noise(a1 * last_size**2, a2 * way**2)
     heading = poses[:, 2] + first_turn
     x, y = poses[:, 0] + moved * np.cos(heading), poses[:, 1] + moved * np.sin(heading)
-    return np.column_stack([x, y, turn(heading + last_turn)])
+    return np.column_stack([x, y, wrapped(heading + last_turn)])
 
 
 def moved_sideways(
@@ -240,4 +236,4 @@ def moved_sideways(
     x = poses[:, 0] + moved * cosine + aside * sine
     y = poses[:, 1] + moved * sine - aside * cosine
     yaw = poses[:, 2] + turned + noise(a4 * turned**2, a2 * way**2)
-    return np.column_stack([x, y, turn(yaw)])
+    return np.column_stack([x, y, wrapped(yaw)])

@@ -16,6 +16,7 @@ from aionode.message_filters import ApproximateTimeSynchronizer, Subscriber
 from aionode.parameter import QoSOverridingOptions
 from aionode.programs._imu_tools.complementary_filter import ComplementaryFilter
 from aionode.programs._imu_tools.quaternions import inverse
+from aionode.programs._stamps import nanoseconds
 from aionode.qos import QoSPolicyKind
 from aionode.tf import TransformBroadcaster, rotation_matrix
 from aionode.tf.apply import angles_of
@@ -90,7 +91,7 @@ class ComplementaryFilterNode(Node):
 
     def measure(self, msg: Imu, magnetometer: MagneticField | None = None) -> None:
         """Publish a message with an orientation; the first message only sets the time."""
-        stamp_ns = int(msg.header.stamp.sec) * 10**9 + int(msg.header.stamp.nanosec)
+        stamp_ns = nanoseconds(msg.header.stamp)
         last_ns, self.last_ns = self.last_ns, stamp_ns
         if last_ns is None:
             return

@@ -23,6 +23,7 @@ from aionode.interfaces.nav_msgs.msg import Odometry
 from aionode.interfaces.robot_localization.srv import SetPose, ToggleFilterProcessing
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.parameter import QoSOverridingOptions
+from aionode.programs._poses import Array, pose_matrix, quaternion_of
 from aionode.programs._robot_localization.kalman import (
     ACCELERATION,
     ANGULAR,
@@ -35,14 +36,10 @@ from aionode.programs._robot_localization.kalman import (
     Filter,
     Measurement,
 )
-from aionode.programs._robot_localization.measurements import (
-    Sensor,
-    matrix_of_transform,
-    nanoseconds,
-)
-from aionode.programs._robot_localization.rotation import Array, quaternion_of
+from aionode.programs._robot_localization.measurements import Sensor
 from aionode.programs._robot_localization.sensors import MAX_QUEUED, SensingNode
 from aionode.programs._robot_localization.settings import OK
+from aionode.programs._stamps import nanoseconds
 from aionode.tf import TransformBroadcaster
 from aionode.tf.apply import angles_of
 
@@ -337,7 +334,8 @@ class FilterNode(SensingNode):
                     skip_first=True,
                 )
                 return
-            matrix = matrix_of_transform(transform.transform) @ base_to_odom
+            pose = transform.transform
+            matrix = pose_matrix(pose.translation, pose.rotation) @ base_to_odom
             transform.child_frame_id = self.odom
             transform.transform.translation = vector(matrix[:3, 3])
             transform.transform.rotation = quaternion_of(*angles_of(matrix[:3, :3]))

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from aionode.programs._robot_localization.rotation import Array, matrix_of, wrapped
+from aionode.programs._poses import Array, matrix_of, wrapped
 
 __all__ = [
     "ACCELERATION",

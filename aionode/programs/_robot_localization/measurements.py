@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from aionode.errors import escaped
+from aionode.programs._poses import Array, matrix_of, wrapped
 from aionode.programs._robot_localization.kalman import (
     ACCELERATION,
     ANGULAR,
@@ -24,11 +25,11 @@ from aionode.programs._robot_localization.kalman import (
     Mask,
     Measurement,
 )
-from aionode.programs._robot_localization.rotation import Array, matrix_of, wrapped
+from aionode.programs._stamps import nanoseconds
 from aionode.tf import rotation_matrix
 from aionode.tf.apply import angles_of
 
-__all__ = ["Frames", "Measuring", "Sensor", "is_unknown", "matrix_of_transform", "nanoseconds"]
+__all__ = ["Frames", "Measuring", "Sensor", "is_unknown"]
 
 Lookup = Callable[[str, str, int], Array | None]
 """Returns the matrix from a frame (the second one) to another at a time, if there is one."""
@@ -341,17 +342,3 @@ def turned(rotation: Array, covariance: Array) -> Array:
     both = np.zeros((6, 6))
     both[:3, :3] = both[3:, 3:] = rotation
     return both @ covariance @ both.T
-
-
-def nanoseconds(stamp: Any) -> int:
-    """Return a stamp in nanoseconds, which may be before 1970 in messages of others."""
-    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
-
-
-def matrix_of_transform(transform: Any) -> Array:
-    """Return a transform as a matrix."""
-    result = np.eye(4)
-    moved = transform.translation
-    result[:3, :3] = rotation_matrix(transform.rotation)
-    result[:3, 3] = moved.x, moved.y, moved.z
-    return result

@@ -20,6 +20,7 @@ from aionode.interfaces.geometry_msgs.msg import (
 )
 from aionode.interfaces.nav_msgs.msg import Odometry
 from aionode.interfaces.sensor_msgs.msg import Imu
+from aionode.programs._poses import Array, pose_matrix
 from aionode.programs._robot_localization.kalman import (
     ACCELERATION,
     ANGULAR,
@@ -36,11 +37,9 @@ from aionode.programs._robot_localization.measurements import (
     Measuring,
     Sensor,
     is_unknown,
-    matrix_of_transform,
-    nanoseconds,
 )
-from aionode.programs._robot_localization.rotation import Array
 from aionode.programs._robot_localization.settings import SettingsNode
+from aionode.programs._stamps import nanoseconds
 from aionode.tf import Buffer
 
 __all__ = ["MAX_QUEUED", "SensingNode"]
@@ -296,7 +295,7 @@ class SensingNode(SettingsNode):
                 found = self.buffer.lookup_transform_core(target, source, time)
             except TransformException:
                 continue
-            return matrix_of_transform(found.transform)
+            return pose_matrix(found.transform.translation, found.transform.rotation)
         return None
 
     async def wait_for_frames(self, msg: Any, parts: list[Sensor]) -> None:

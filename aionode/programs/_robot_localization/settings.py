@@ -11,9 +11,9 @@ import numpy as np
 from aionode import Node, Parameter
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticStatus
+from aionode.programs._poses import Array
 from aionode.programs._robot_localization.kalman import SIZE, Control, Filter
 from aionode.programs._robot_localization.measurements import Frames
-from aionode.programs._robot_localization.rotation import Array
 
 __all__ = ["OK", "SettingsNode"]
 

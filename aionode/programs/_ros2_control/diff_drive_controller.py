@@ -25,6 +25,7 @@ from aionode.programs._ros2_control.controller import Controller
 from aionode.programs._ros2_control.hardware import Hardware
 from aionode.programs._ros2_control.odometry import Odometry
 from aionode.programs._ros2_control.speed_limiter import SpeedLimiter
+from aionode.programs._stamps import nanoseconds
 
 __all__ = ["DiffDriveController"]
 
@@ -190,7 +191,7 @@ class DiffDriveController(Controller):
     def on_stamped(self, msg: TwistStamped) -> None:
         """Take a command, unless it is too old."""
         now = self.get_clock().now().nanoseconds
-        sent = msg.header.stamp.sec * 10**9 + msg.header.stamp.nanosec
+        sent = nanoseconds(msg.header.stamp)
         if not sent:
             sent = now
             if self.is_stamped:

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from aionode.programs._stamps import nanoseconds
 
-__all__ = ["TrajectoryCheck", "nanoseconds"]
+__all__ = ["TrajectoryCheck"]
 
 FIELDS: Final = ("positions", "velocities", "accelerations", "effort")
 STANDS_STILL: Final = 1.2e-7
 """The resolution of a 32-bit float at 1, as in ros2_controllers."""
-
-
-def nanoseconds(stamp: Any) -> int:
-    """Return a time or duration in nanoseconds."""
-    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,11 @@ from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTraject
 from aionode.lifecycle import State, TransitionCallbackReturn
 from aionode.programs._ros2_control.controller import Controller
 from aionode.programs._ros2_control.hardware import Hardware
-from aionode.programs._ros2_control.trajectories.check import TrajectoryCheck, nanoseconds
+from aionode.programs._ros2_control.trajectories.check import TrajectoryCheck
 from aionode.programs._ros2_control.trajectories.pid import Pid
 from aionode.programs._ros2_control.trajectories.splines import Point, Trajectory, shortest_way
 from aionode.programs._ros2_control.trajectories.tolerances import Tolerances
+from aionode.programs._stamps import nanoseconds
 
 __all__ = ["JointTrajectoryController"]
 

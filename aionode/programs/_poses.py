@@ -1,4 +1,4 @@
-"""Matrices of rotations in space, and angles."""
+"""Poses and rotations in space as matrices, and angles."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from aionode.interfaces.geometry_msgs.msg import Quaternion
-from aionode.tf.apply import from_angles
+from aionode.tf.apply import from_angles, rotation_matrix
 
-__all__ = ["Array", "matrix_of", "quaternion_of", "wrapped"]
+__all__ = ["Array", "matrix_of", "pose_matrix", "quaternion_of", "wrapped"]
 
 Array = npt.NDArray[np.float64]
 
@@ -33,6 +33,14 @@ def matrix_of(roll: float, pitch: float, yaw: float) -> Array:
             [-sp, cp * sr, cp * cr],
         ]
     )
+
+
+def pose_matrix(place: Any, rotation: Quaternion) -> Array:
+    """Return a pose as a matrix; `place` is its point or translation."""
+    result = np.eye(4)
+    result[:3, :3] = rotation_matrix(rotation)
+    result[:3, 3] = place.x, place.y, place.z
+    return result
 
 
 def quaternion_of(roll: float, pitch: float, yaw: float) -> Quaternion:
