@@ -93,6 +93,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "ackermann_to_vesc_node": "_vesc.ackermann_to_vesc_node",
         "vesc_to_odom_node": "_vesc.vesc_to_odom_node",
     },
+    "ydlidar_ros2_driver": {"ydlidar_ros2_driver_node": "_ydlidar.ydlidar_ros2_driver_node"},
 }
 """The module of `aionode.programs` for an executable, by package and name.
 

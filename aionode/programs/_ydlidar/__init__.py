@@ -1,0 +1,1 @@
+"""The lidars of YDLIDAR on a serial port."""
