@@ -93,6 +93,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "ackermann_to_vesc_node": "_vesc.ackermann_to_vesc_node",
         "vesc_to_odom_node": "_vesc.vesc_to_odom_node",
     },
+    "vesc_driver": {"vesc_driver_node": "_vesc.vesc_driver_node"},
     "ydlidar_ros2_driver": {"ydlidar_ros2_driver_node": "_ydlidar.ydlidar_ros2_driver_node"},
 }
 """The module of `aionode.programs` for an executable, by package and name.
@@ -155,6 +156,9 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
             "ackermann_to_vesc_node",
         ),
         "vesc_ackermann::VescToOdom": ("_vesc.vesc_to_odom_node:VescToOdom", "vesc_to_odom_node"),
+    },
+    "vesc_driver": {
+        "vesc_driver::VescDriver": ("_vesc.vesc_driver_node:VescDriver", "vesc_driver")
     },
 }
 """The node class of `aionode.programs` that is a plugin for containers, by package and name.

@@ -100,6 +100,20 @@ class SerialPort:
         if count < len(data):
             raise OSError(f"{self.path} does not send: {count} of {len(data)} bytes were accepted")
 
+    def write_latest(self, data: bytes) -> None:
+        """Write bytes; if the kernel still holds too many earlier ones, in place of those.
+
+        Raises:
+            OSError: The port is gone, or does not take even these.
+        """
+        try:
+            self.write(data)
+        except OSError as error:
+            if error.errno == errno.ENODEV:
+                raise
+            self.device.reset_output_buffer()
+            self.write(data)
+
     def set_dtr(self, *, is_on: bool) -> None:
         """Set the line DTR, if the port has one; one that is gone is left alone."""
         if self.device.is_open:

@@ -7,6 +7,7 @@ import os
 import sys
 import termios
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -111,6 +112,22 @@ async def test_a_device_that_takes_no_bytes_does_not_fill_the_memory(port: Seria
     """What the kernel does not take is an error rather than kept."""
     with pytest.raises(OSError, match=r"does not send: \d+ of 10000000 bytes were accepted"):
         port.write(bytes(10_000_000))
+
+
+async def test_the_latest_bytes_replace_those_that_a_device_does_not_take(
+    cable: Cable, port: SerialPort
+) -> None:
+    """A stop is no use behind old commands."""
+    with pytest.raises(OSError, match="does not send"):
+        port.write(bytes(10_000_000))
+    port.write_latest(b"stop")
+
+    os.set_blocking(cable.end, False)
+    arrived = b""
+    with suppress(BlockingIOError):
+        while True:
+            arrived += os.read(cable.end, 10_000)
+    assert arrived.endswith(b"stop")
 
 
 async def test_a_device_that_sends_without_end_does_not_fill_the_memory(

@@ -12,6 +12,7 @@ from aionode.interfaces.geometry_msgs.msg import Quaternion, TransformStamped, V
 from aionode.interfaces.nav_msgs.msg import Odometry
 from aionode.interfaces.std_msgs.msg import Float64
 from aionode.interfaces.vesc_msgs.msg import VescStateStamped
+from aionode.programs._stamps import nanoseconds
 from aionode.programs._vesc.numbers import FIXED, Line, number
 from aionode.tf import TransformBroadcaster
 
@@ -76,7 +77,7 @@ class VescToOdom(Node):
             if self.angle is None:  # nobody has steered yet
                 return
             angular = speed * math.tan(self.angle) / self.wheelbase
-        now_ns = msg.header.stamp.sec * 10**9 + msg.header.stamp.nanosec
+        now_ns = nanoseconds(msg.header.stamp)
         # A clock that was set back says nothing about the time between two messages.
         elapsed = max(0, now_ns - (now_ns if self.last_ns is None else self.last_ns)) / 1e9
         x, y, yaw = self.pose
