@@ -436,6 +436,15 @@ def test_an_unknown_program_of_a_package_that_is_not_there_is_named_with_those_o
         Packages().command("tf2_ros", "monitor")
 
 
+def test_an_unknown_program_of_a_package_in_cpp_is_said_to_need_ros() -> None:
+    """The other program of Cartographer, whose name is similar, would not help."""
+    with pytest.raises(ExecutableNotFoundError) as raised:
+        Packages().command("cartographer_ros", "cartographer_node")
+
+    assert "the package is a mapping program in C++; a ROS 2 with rmw_zenoh" in str(raised.value)
+    assert "did you mean" not in str(raised.value)
+
+
 @pytest.mark.parametrize(
     ("package", "name"), [(package, name) for package in MODULES for name in MODULES[package]]
 )

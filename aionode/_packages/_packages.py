@@ -127,7 +127,9 @@ class Packages:
         is_one_window = is_window(package, name) and not is_window(package)
         known = {} if is_one_window and not self.has(package) else self.executables(package)
         if name not in known:
-            raise ExecutableNotFoundError(package, name, self._place(package), tuple(known))
+            raise ExecutableNotFoundError(
+                package, name, self._place(package), tuple(known), remark_on(package)
+            )
         return known[name]
 
     def command(self, package: str, name: str, options: Sequence[str] = ()) -> list[str]:

@@ -22,6 +22,10 @@ SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
 """The folder with the data, such as launch files, of the packages whose programs aionode has."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "cartographer_ros": {
+        "cartographer_occupancy_grid_node": "_cartographer.occupancy_grid_node",
+        "occupancy_grid_node": "_cartographer.occupancy_grid_node",
+    },
     "ackermann_mux": {"ackermann_mux": "_command_mux.ackermann_mux"},
     "controller_manager": {
         "hardware_spawner": "_ros2_control.hardware_spawner",

@@ -55,13 +55,24 @@ class ExecutableNotFoundError(AionodeError, LookupError):
         place: The folder of the package; None if the package is not there, and only aionode's own
             programs stand in for it.
         suggestions: Names of similar executables.
+        remark: What the package is and what to use instead, if aionode cannot provide all of it.
     """
 
-    def __init__(self, package: str, name: str, place: str | None, known: Sequence[str]) -> None:
+    def __init__(
+        self,
+        package: str,
+        name: str,
+        place: str | None,
+        known: Sequence[str],
+        remark: str = "",
+    ) -> None:
         self.package = package
         self.name = name
         self.place = place
+        self.remark = remark
         self.suggestions, hint = offered(name, "its executables", known)
+        if remark and known and place is None:
+            hint = f"it has {', '.join(known)}; the package is {remark}"
         super().__init__(
             f"package {package!r}: not found, and aionode has no program {name!r} of it; {hint}; "
             "--workspace FOLDER names the folder that holds the package"

@@ -1,0 +1,1 @@
+"""Cartographer's maps: the submaps of a cartographer_node as one grid."""
