@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import sys
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -31,11 +32,13 @@ def uncollected() -> Iterator[None]:
     """
     collects = gc.isenabled()
     gc.disable()
+    imported = len(sys.modules)
     try:
         yield
     finally:
         if collects:
-            if not program_has_frozen():
+            # Python counts frozen objects one by one: only if there are new objects to move.
+            if len(sys.modules) > imported and not program_has_frozen():
                 gc.freeze()
                 gc.unfreeze()  # to the oldest generation
             gc.enable()

@@ -4,6 +4,7 @@ import gc
 import os
 import subprocess
 import sys
+from types import ModuleType
 
 import pytest
 
@@ -41,18 +42,28 @@ def test_what_an_import_creates_is_old_at_once(monkeypatch: pytest.MonkeyPatch) 
     try:
         with uncollected():
             created: list[object] = []
+            monkeypatch.setitem(sys.modules, "aionode_imported", ModuleType("aionode_imported"))
         assert any(old is created for old in gc.get_objects(generation=2))
     finally:
         gc.freeze()
 
 
-def test_what_the_program_has_frozen_stays_frozen() -> None:
+def test_what_the_program_has_frozen_stays_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
     """As with `freeze_objects`."""
     gc.freeze()
     count = gc.get_freeze_count()
     with uncollected():
-        pass
+        monkeypatch.setitem(sys.modules, "aionode_imported", ModuleType("aionode_imported"))
     assert gc.get_freeze_count() == count
+
+
+def test_without_an_import_frozen_objects_are_not_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In a program that has frozen a million, counting them takes 50 ms."""
+    monkeypatch.setattr(gc, "get_freeze_count", lambda: pytest.fail("counted"))
+    with uncollected():
+        pass
 
 
 def test_the_collector_is_on_again_after_an_import_that_fails() -> None:
