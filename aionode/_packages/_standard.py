@@ -91,6 +91,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     },
     "twist_mux": {"twist_mux": "_command_mux.twist_mux"},
     "urdf_launch": {},
+    "urg_node": {"urg_node_driver": "_urg.urg_node_driver"},
     "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
     "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},
     "vesc_ackermann": {
@@ -150,6 +151,7 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
         f"topic_tools::{name}Node": (f"_topic_tools.{name.lower()}:{name}", name.lower())
         for name in ("Delay", "Demux", "Drop", "Mux", "Relay", "Throttle")
     },
+    "urg_node": {"urg_node::UrgNode": ("_urg.urg_node_driver:UrgNode", "urg_node")},
     "usb_cam": {"usb_cam::UsbCamNode": ("_camera.usb_cam_node:UsbCam", "usb_cam")},
     "v4l2_camera": {
         "v4l2_camera::V4L2Camera": ("_camera.v4l2_camera_node:V4L2Camera", "v4l2_camera")

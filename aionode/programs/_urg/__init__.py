@@ -1,0 +1,1 @@
+"""The lidars of Hokuyo, by the protocol SCIP 2.0."""
