@@ -131,6 +131,17 @@ async def test_jpeg_of_a_camera_is_passed_on_unchanged(
     assert "/image_raw" not in names
 
 
+async def test_pictures_that_jpeg_cannot_hold_are_converted_for_it(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """Otherwise a subscription would end the camera, with the default format of usb_cam."""
+    viewer.look(CompressedImage, "image_raw/compressed")
+    start(UsbCam, video_device=str(videos / "plain.mkv"), **SMALL)
+    picture = (await viewer.pictures(5))[-1]
+
+    assert float(to_numpy(decompress(picture)).mean()) == pytest.approx(80, abs=8)
+
+
 async def test_set_capture_ends_the_pictures(start: Start, viewer: Viewer, videos: Path) -> None:
     """It also begins them again."""
     viewer.look(CameraInfo, "camera_info")

@@ -119,4 +119,5 @@ class Camera(Node):
         """Return a picture as JPEG: unchanged if it was one."""
         if frame.jpeg is not None:
             return CompressedImage(header=image.header, format="jpeg", data=frame.jpeg)
+        image = from_numpy(*frame.for_jpeg(), image.header)
         return compressed(image, "jpeg", 95, 3)

@@ -42,6 +42,10 @@ FORMATS: Final = {
 """Pixel formats, by the names of usb_cam."""
 
 
+JPEG: Final = ("rgb8", "bgr8", "rgba8", "bgra8", "mono8")
+"""The encodings that are compressed as they are."""
+
+
 class Frame(NamedTuple):
     """A picture.
 
@@ -49,11 +53,21 @@ class Frame(NamedTuple):
         pixels: Its pixels.
         encoding: Their encoding.
         jpeg: The picture as JPEG, if the camera sent it so and in this size.
+        picture: The picture as PyAV has it.
     """
 
     pixels: npt.NDArray[Any]
     encoding: str
     jpeg: bytes | None
+    picture: Any
+
+    def for_jpeg(self) -> tuple[npt.NDArray[Any], str]:
+        """Return pixels that JPEG can hold, and their encoding."""
+        if self.encoding in JPEG:
+            return self.pixels, self.encoding
+        kind, encoding = ("gray", "mono8") if self.encoding == "mono16" else ("rgb24", "rgb8")
+        height, width = self.pixels.shape[:2]
+        return self.picture.reformat(width=width, height=height, format=kind).to_ndarray(), encoding
 
 
 def check_device(path: str, *, may_come_later: bool = False) -> None:
@@ -148,7 +162,7 @@ class Video:
         pixels = found.to_ndarray()
         if self.format.encoding == "yuv422":
             pixels = np.ascontiguousarray(pixels.reshape(height, width, 2)[..., ::-1])
-        return Frame(pixels, self.format.encoding, data)
+        return Frame(pixels, self.format.encoding, data, picture)
 
     def close(self) -> None:
         """Close it, from any thread: at once, or as soon as the last reader has finished."""
