@@ -22,6 +22,7 @@ SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
 """The folder with the data, such as launch files, of the packages whose programs aionode has."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "camera_ros": {"camera_node": "_camera.camera_node"},
     "cartographer_ros": {
         "cartographer_occupancy_grid_node": "_cartographer.occupancy_grid_node",
         "occupancy_grid_node": "_cartographer.occupancy_grid_node",
@@ -107,6 +108,7 @@ A package without executables has data only.
 """
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
+    "camera_ros": {"camera::CameraNode": ("_camera.camera_node:CameraNode", "camera")},
     "composition": {
         "composition::Listener": ("_demo_nodes.listener:Listener", "listener"),
         "composition::Talker": ("_demo_nodes.talker:Talker", "talker"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -22,7 +23,9 @@ from aionode.image import decompress, to_numpy
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
 from aionode.interfaces.std_srvs.srv import SetBool
+from aionode.programs._camera import video
 from aionode.programs._camera.calibration import Calibration, info_of, text_of
+from aionode.programs._camera.camera_node import CameraNode, chosen, devices
 from aionode.programs._camera.usb_cam_node import UsbCam
 from aionode.programs._camera.v4l2_camera_node import V4L2Camera
 from tests.programs.conftest import Start
@@ -181,6 +184,148 @@ async def test_v4l2_camera_publishes_the_calibration_of_its_size(
     assert (seen.header.frame_id, images[0].encoding) == ("eye", "rgb8")
 
 
+async def test_camera_ros_publishes_below_the_name_of_its_node(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """The pictures of a camera as they are, if nothing else is chosen."""
+    viewer.look(Image, "/camera/image_raw")
+    viewer.look(CameraInfo, "/camera/camera_info")
+    start(CameraNode, camera=str(videos / "plain.mkv"), frame_id="eye")
+    image, info = sorted(
+        await viewer.pictures(2), key=lambda each: type(each).__name__, reverse=True
+    )
+
+    assert (image.width, image.height, image.encoding) == (WIDTH, HEIGHT, "rgb8")
+    assert (info.width, info.height) == (WIDTH, HEIGHT)
+    assert image.header == info.header
+    assert image.header.frame_id == "eye"
+
+
+@pytest.mark.parametrize(
+    ("pixels", "encoding"),
+    [
+        ("BGR888", "rgb8"),
+        ("RGB888", "bgr8"),
+        ("XRGB8888", "bgra8"),
+        ("ABGR8888", "rgba8"),
+        ("YUYV", "yuv422_yuy2"),
+        ("UYVY", "yuv422"),
+        ("R8", "mono8"),
+        ("R16", "mono16"),
+        ("MJPEG", "rgb8"),
+    ],
+)
+async def test_pixel_formats_of_camera_ros_are_those_of_libcamera(
+    start: Start, viewer: Viewer, videos: Path, pixels: str, encoding: str
+) -> None:
+    """Their names and ROS's have opposite orders."""
+    viewer.look(Image, "/camera/image_raw")
+    start(CameraNode, camera=str(videos / "plain.mkv"), format=pixels, width=32, height=24)
+    (image,) = await viewer.pictures(1)
+
+    assert (image.encoding, image.width, image.height) == (encoding, 32, 24)
+
+
+@pytest.mark.parametrize("pixels", ["", "XRGB8888", "YUYV", "UYVY", "R8", "R16", "MJPEG"])
+async def test_pictures_of_camera_ros_are_jpeg_in_all_formats(
+    start: Start, viewer: Viewer, videos: Path, pixels: str
+) -> None:
+    """For those who subscribe to them."""
+    viewer.look(CompressedImage, "/camera/image_raw/compressed")
+    start(CameraNode, camera=str(videos / "plain.mkv"), format=pixels)
+    (picture,) = await viewer.pictures(1)
+
+    assert decompress(picture).width == WIDTH
+
+
+async def test_the_quality_of_jpeg_can_be_changed(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """While the camera runs, as in camera_ros."""
+    node = start(CameraNode, camera=str(videos / "plain.mkv"), jpeg_quality=90)
+    assert node.jpeg_quality == 90
+
+    assert node.set_parameters([Parameter("jpeg_quality", value=20)])[0].successful
+    assert node.jpeg_quality == 20
+    assert not node.set_parameters([Parameter("jpeg_quality", value=101)])[0].successful
+
+
+async def test_the_rate_is_that_of_the_shortest_time_between_pictures(
+    start: Start, videos: Path
+) -> None:
+    """As libcamera has no parameter for a rate."""
+    limits = {"FrameDurationLimits": [20000, 40000]}
+
+    assert start(CameraNode, camera=str(videos / "plain.mkv"), **limits).rate == 50.0
+
+
+async def test_parameters_that_need_libcamera_are_named_once_each(
+    start: Start, videos: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nobody should wonder why a camera takes no notice of them; nor can they be set later."""
+    given_values = {"role": "still", "sensor_mode": "1640:1232", "orientation": 180, "Gamma": 2.0}
+    node = start(
+        CameraNode, camera=str(videos / "plain.mkv"), format="R8", width=4, height=4, **given_values
+    )
+
+    lines = [line for line in capsys.readouterr().err.splitlines() if "no effect" in line]
+    assert [line.partition("parameter '")[2].partition("'")[0] for line in lines] == list(
+        given_values
+    )
+    assert not node.set_parameters([Parameter("AeEnable", value=False)])[0].successful
+
+
+@pytest.fixture
+def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return a folder that describes two cameras, one of them with a device for metadata."""
+    usb = tmp_path / "usb1/1-4"
+    for interface in ("1-4:1.0", "1-5:1.0"):
+        (tmp_path / "usb1" / interface[:3] / interface).mkdir(parents=True)
+    (usb / "idVendor").write_text("0ac8\n")
+    (usb / "idProduct").write_text("3420\n")
+    folder = tmp_path / "video4linux"
+    for number, name, index, place in (
+        (10, "Other", 0, "usb1/1-5/1-5:1.0"),
+        (2, "HD Webcam", 0, "usb1/1-4/1-4:1.0"),
+        (3, "HD Webcam", 1, "usb1/1-4/1-4:1.0"),
+    ):
+        device = folder / f"video{number}"
+        device.mkdir(parents=True)
+        (device / "name").write_text(f"{name}\n")
+        (device / "index").write_text(f"{index}\n")
+        (device / "device").symlink_to(tmp_path / place)
+    monkeypatch.setattr(video, "SYSTEM", folder)
+    monkeypatch.setattr("aionode.programs._camera.camera_node.SYSTEM", folder)
+    return folder
+
+
+@pytest.mark.usefixtures("system")
+@pytest.mark.parametrize(
+    ("camera", "device"),
+    [
+        (None, "/dev/video2"),
+        (0, "/dev/video2"),
+        (1, "/dev/video10"),
+        ("Other", "/dev/video10"),
+        ("/dev/video10", "/dev/video10"),
+        (r"\_SB_.PCI0.RP05.PXSX.XHC_.RHUB.HS04-4:1.0-0ac8:3420", "/dev/video2"),
+        ("/dev/null", "/dev/null"),
+    ],
+)
+def test_a_camera_is_selected_by_index_or_name(camera: object, device: str) -> None:
+    """Also by the name that libcamera gives to a camera at USB."""
+    assert chosen(camera, devices()) == device
+
+
+@pytest.mark.usefixtures("system")
+@pytest.mark.parametrize("camera", [2, -1, True, "", "none", "-0ac8:3420", 0.5, [0]])
+def test_a_camera_that_is_not_there_is_named_with_those_that_are(camera: object) -> None:
+    """So that the right one can be chosen."""
+    cameras = re.escape("cameras here: 0 'HD Webcam' (/dev/video2), 1 'Other' (/dev/video10)")
+    with pytest.raises(CommandError, match=cameras):
+        chosen(camera, devices())
+
+
 async def test_a_calibration_is_kept_in_its_file(
     node_factory: Callable[..., Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -226,6 +371,15 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
         (UsbCam, {"framerate": 0.0}, "use numbers above 0"),
         (V4L2Camera, {"image_size": [640]}, "Invalid image size"),
         (V4L2Camera, {"output_encoding": "mono"}, "output_encoding 'mono'"),
+        (CameraNode, {"camera": "none.mkv"}, "camera 'none.mkv' does not exist; cameras here"),
+        (CameraNode, {"format": "NV21"}, "unsupported pixel format 'NV21'; use BGR888, RGB888"),
+        (CameraNode, {"role": "photo"}, "invalid stream role: 'photo'; use viewfinder, video"),
+        (CameraNode, {"sensor_mode": "1640x1232"}, "Expected .width.:.height. but got '1640x1232'"),
+        (CameraNode, {"width": 640}, "width is 640 and height 0; use numbers above 0 for both"),
+        (CameraNode, {"width": -1, "height": -1}, "width is -1 and height -1"),
+        (CameraNode, {"FrameDurationLimits": [3, 2]}, "FrameDurationLimits is .*such as .33333"),
+        (CameraNode, {"FrameDurationLimits": "30"}, "FrameDurationLimits is '30'"),
+        (CameraNode, {"FrameDurationLimits": [0.1, 0.2]}, "FrameDurationLimits is "),
     ],
 )
 async def test_what_does_not_fit_is_refused(

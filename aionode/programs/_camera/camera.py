@@ -26,23 +26,28 @@ class Camera(Node):
 
     Attributes:
         device: The device, or a video file, which is played in a loop.
-        pixel_format: One of `FORMATS`.
-        size: Width and height.
+        format: How its pixels are read and published.
+        size: Width and height; zeros for those of the camera.
         rate: Pictures per second.
         frame_id: The frame of the camera.
         is_capturing: Whether pictures are taken.
         has_raw: Whether `image_raw` is published.
+        jpeg_quality: That of images which the camera did not send as JPEG.
     """
+
+    namespace = ""
+    """What precedes the names of its topics."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.device = ""
-        self.pixel_format = "yuyv2rgb"
+        self.format = FORMATS["yuyv2rgb"]
         self.size = (640, 480)
         self.rate = 30.0
         self.frame_id = ""
         self.is_capturing = True
         self.has_raw = True
+        self.jpeg_quality = 95
         self.offset_ns = 0
 
     def begin(
@@ -55,9 +60,10 @@ class Camera(Node):
         """
         check_device(self.device, may_come_later=may_come_later)
         self.calibration = calibration
-        self.images = self.create_publisher(Image, "image_raw", qos) if self.has_raw else None
-        self.small = self.create_publisher(CompressedImage, "image_raw/compressed", qos)
-        self.infos = self.create_publisher(CameraInfo, "camera_info", qos)
+        image = f"{self.namespace}image_raw"
+        self.images = self.create_publisher(Image, image, qos) if self.has_raw else None
+        self.small = self.create_publisher(CompressedImage, f"{image}/compressed", qos)
+        self.infos = self.create_publisher(CameraInfo, f"{self.namespace}camera_info", qos)
         create_wall_timer(self, START_SEC, self.capture)
 
     async def capture(self) -> None:
@@ -78,8 +84,7 @@ class Camera(Node):
         Raises:
             OSError: It cannot be opened, or no longer be read.
         """
-        given = FORMATS[self.pixel_format]
-        video = await asyncio.to_thread(Video, self.device, given, self.size, self.rate)
+        video = await asyncio.to_thread(Video, self.device, self.format, self.size, self.rate)
         clock = wall_clock(self)
         count = 0
         try:
@@ -109,7 +114,7 @@ class Camera(Node):
             self.images.publish(image)
         if self.small.get_subscription_count():
             self.small.publish(await asyncio.to_thread(self.compressed, frame, image))
-        found = self.calibration.for_size(*self.size)
+        found = self.calibration.for_size(image.width, image.height)
         info = CameraInfo(header=header, width=found.width, height=found.height)
         for name in ("distortion_model", "d", "k", "r", "p", "binning_x", "binning_y", "roi"):
             setattr(info, name, getattr(found, name))
@@ -120,4 +125,4 @@ class Camera(Node):
         if frame.jpeg is not None:
             return CompressedImage(header=image.header, format="jpeg", data=frame.jpeg)
         image = from_numpy(*frame.for_jpeg(), image.header)
-        return compressed(image, "jpeg", 95, 3)
+        return compressed(image, "jpeg", self.jpeg_quality, 3)

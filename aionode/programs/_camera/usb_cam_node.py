@@ -49,7 +49,7 @@ class UsbCam(Camera):
         height = self.declare_parameter("image_height", 480).value
         self.size = (self.declare_parameter("image_width", 640).value, height)
         method = self.declare_parameter("io_method", "mmap").value
-        self.pixel_format = self.declare_parameter("pixel_format", "yuyv").value
+        pixels = self.declare_parameter("pixel_format", "yuyv").value
         self.declare_parameter("av_device_format", "YUV422P")
         self.device = self.declare_parameter("video_device", "/dev/video0").value
         for parameter, value in (CONTROLS | SWITCHES).items():
@@ -57,18 +57,19 @@ class UsbCam(Camera):
         skips_check = self.declare_parameter("skip_device_check", False).value
         if skips_check:
             self.get_logger().warning("Skipping V4L2 device availability check by request.")
-        if self.pixel_format not in FORMATS:
-            raise CommandError(f"pixel_format is {self.pixel_format!r}; use {', '.join(FORMATS)}")
+        if pixels not in FORMATS:
+            raise CommandError(f"pixel_format is {pixels!r}; use {', '.join(FORMATS)}")
+        self.format = FORMATS[pixels]
         if min(self.size) < 1 or not 0 < self.rate < math.inf:
             raise CommandError(
                 f"the camera should have {self.size} pixels at {self.rate} Hz; use numbers above 0"
             )
-        self.has_raw = self.pixel_format != "mjpeg"
+        self.has_raw = pixels != "mjpeg"
         qos = QoSProfile(depth=100)
         self.begin(Calibration(self, name, url), qos, may_come_later=skips_check)
         self.get_logger().info(
             f"Starting '{name}' ({self.device}) at {self.size[0]}x{self.size[1]} via {method} "
-            f"({self.pixel_format}) at {int(self.rate)} FPS"
+            f"({pixels}) at {int(self.rate)} FPS"
         )
         self.create_service(SetBool, "set_capture", self.on_set_capture)
         self.controlling = create_wall_timer(self, CONTROL_SEC, self.control_again, autostart=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Final
 
 import aionode
@@ -12,6 +11,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.programs._camera.calibration import Calibration
 from aionode.programs._camera.camera import Camera
+from aionode.programs._camera.video import FORMATS, name_of
 from aionode.qos import qos_profile_sensor_data
 
 __all__ = ["V4L2Camera", "main"]
@@ -45,7 +45,7 @@ class V4L2Camera(Camera):
                 f"pixel_format is {pixels!r} and output_encoding {encoding!r}; "
                 f"use {' or '.join(PIXELS)}, and {' or '.join(ENCODINGS)}"
             )
-        self.pixel_format = self.format_of(PIXELS[pixels], encoding)
+        self.format = FORMATS[self.format_of(PIXELS[pixels], encoding)]
         size = list(self.declare_parameter("image_size", [640, 480]).value)
         if len(size) != 2 or min(size) < 1:
             raise CommandError(f"Invalid image size; expected dimensions: 2, given: {size}")
@@ -54,7 +54,7 @@ class V4L2Camera(Camera):
         if len(period) != 2 or min(period) < 1:
             raise CommandError(f"Invalid time per frame; expected dimensions: 2, given: {period}")
         self.rate = period[1] / period[0]
-        name = re.sub(r"\W", "_", self.name_of(self.device).lower())
+        name = re.sub(r"\W", "_", name_of(self.device).lower())
         qos = qos_profile_sensor_data if is_sensor else QoSProfile(depth=10)
         self.begin(Calibration(self, name, url), qos)
 
@@ -66,12 +66,6 @@ class V4L2Camera(Camera):
         if encoding == "rgb8":
             return pixels if pixels == "rgb8" else f"{pixels.replace('mono8', 'yuyv')}2rgb"
         return "uyvy" if encoding == "yuv422" else "yuyv"
-
-    @staticmethod
-    def name_of(device: str) -> str:
-        """Return the name of a camera, as reported by its driver."""
-        file = Path("/sys/class/video4linux", Path(device).resolve().name, "name")
-        return file.read_text(encoding="utf-8").strip() if file.is_file() else Path(device).stem
 
 
 def main() -> None:

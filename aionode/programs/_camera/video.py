@@ -11,14 +11,18 @@ import numpy.typing as npt
 
 from aionode.errors import CommandError
 
-__all__ = ["FORMATS", "Frame", "Video", "check_device"]
+__all__ = ["FORMATS", "Format", "Frame", "Video", "check_device", "name_of"]
+
+
+SYSTEM: Final = Path("/sys/class/video4linux")
+"""Where Linux describes the devices of cameras."""
 
 
 class Format(NamedTuple):
     """How pixels are read, and how they are published.
 
     Attributes:
-        v4l2: The format requested from a camera, by ffmpeg's name.
+        v4l2: The format requested from a camera, by ffmpeg's name; empty for any.
         av: The format to which ffmpeg converts them.
         encoding: ROS's name for that format.
     """
@@ -90,13 +94,19 @@ def check_device(path: str, *, may_come_later: bool = False) -> None:
         ) from None
 
 
+def name_of(path: str) -> str:
+    """Return the name of a camera, as reported by its driver, or of a file."""
+    file = SYSTEM / Path(path).resolve().name / "name"
+    return file.read_text(encoding="utf-8").strip() if file.is_file() else Path(path).stem
+
+
 class Video:
     """An open camera or file. Its methods block, so they belong in a thread.
 
     Args:
         path: The device, or the file of a video.
         format_: How pixels are read, and how they are published.
-        size: Width and height; files are scaled to it.
+        size: Width and height, to which files are scaled; zeros for those of the camera or file.
         rate: The number of pictures per second requested from a camera.
 
     Raises:
@@ -112,10 +122,11 @@ class Video:
         width, height = size
         options = {
             "input_format": format_.v4l2,
-            "video_size": f"{width}x{height}",
+            "video_size": f"{width}x{height}" if width else "",
             "framerate": f"{rate:g}",
         }
-        given = {"format": "v4l2", "options": options} if self.is_camera else {}
+        wanted = {name: value for name, value in options.items() if value}
+        given = {"format": "v4l2", "options": wanted} if self.is_camera else {}
         opening: Any = av.open
         self.failures = (av.error.FFmpegError, IndexError)
         try:
@@ -155,8 +166,9 @@ class Video:
             data = bytes(packet) if self.is_jpeg and packet.size else None
             self.waiting = [(picture, data) for picture in pictures]
         picture, data = self.waiting.pop(0)
-        width, height = self.size
-        if (picture.width, picture.height) != self.size:
+        own = (picture.width, picture.height)
+        width, height = self.size if any(self.size) else own
+        if (width, height) != own:
             data = None
         found = picture.reformat(width=width, height=height, format=self.format.av)
         pixels = found.to_ndarray()
