@@ -104,6 +104,23 @@ async def test_a_robot_stops_when_the_button_is_released(desk: Callable[..., Any
     assert await it.press(0, 0) == []
 
 
+async def test_the_default_command_is_active_while_no_button_is_pressed(
+    desk: Callable[..., Any],
+) -> None:
+    """F1TENTH's cars so keep planners from driving until somebody holds a button."""
+    still = {
+        name.replace("walk", "default"): 0.0 if name.endswith(("scale", "offset")) else value
+        for name, value in WALK.items()
+        if not name.endswith("buttons")
+    }
+    it = await desk(Twist, "cmd_vel", **WALK | still)
+
+    assert speeds(await it.press(0, 0, axes=(0.0, 1.0))) == [(0.0, 0.0)]
+    assert speeds(await it.press(0, 1, axes=(0.0, 1.0)))[-1:] == [(0.6, 0.0)]
+    assert len(await it.press(1, 0, axes=(0.0, 1.0))) == 1  # the stop of the other command
+    assert await it.press(1, 0, axes=(0.0, 1.0)) == []
+
+
 async def test_a_robot_stops_when_the_joystick_falls_silent(
     desk: Callable[..., Any], caplog: pytest.LogCaptureFixture
 ) -> None:

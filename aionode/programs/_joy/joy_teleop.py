@@ -23,6 +23,8 @@ START_SEC: Final = 0.01
 MAX_INDEX: Final = 10_000
 """The highest index in a list that an axis may set."""
 
+DEFAULT: Final = "default"
+
 MAX_UNANSWERED: Final = 100
 """The requests of a command that may wait for their answers; more presses send none."""
 
@@ -136,6 +138,8 @@ def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
 class Command:
     """Something that buttons and axes do; it is active while all of them are pressed.
 
+    The command `DEFAULT` needs none: then it is active while no button is pressed.
+
     Args:
         name: Its name in the parameters.
         config: Its parameters.
@@ -150,12 +154,15 @@ class Command:
         self.buttons, self.axes, self.negative = (
             indices(config, f"{prefix}{key}", name) for key in ("buttons", "axes", "axes_negative")
         )
-        if not (self.buttons or self.axes or self.negative):
+        self.is_default = not (self.buttons or self.axes or self.negative)
+        if self.is_default and name != DEFAULT:
             raise CommandError(f"No buttons, axes or negative_axes configured for command '{name}'")
         self.is_active = False
 
     def is_pressed(self, joy: Joy) -> bool:
         """Return whether its buttons and axes are pressed; those that are not there never are."""
+        if self.is_default:
+            return not any(joy.buttons)
         return (
             all(at < len(joy.buttons) and joy.buttons[at] == 1 for at in self.buttons)
             and all(at < len(joy.axes) and joy.axes[at] == 1.0 for at in self.axes)
