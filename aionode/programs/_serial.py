@@ -20,21 +20,20 @@ CHUNK: Final = 4096
 
 
 class SerialPort:
-    """An open serial port.
+    """An open serial port, which one task at a time may read.
+
+    The event loop's own streams are not used: uvloop's close the descriptor a second time, and read
+    it where they should only write.
 
     Args:
         device: The port, as pyserial opened it.
-        reader: Its incoming bytes.
-        transport: What fills the reader.
     """
 
-    def __init__(
-        self, device: Serial, reader: asyncio.StreamReader, transport: asyncio.ReadTransport
-    ) -> None:
+    def __init__(self, device: Serial) -> None:
         self.device = device
         self.path = str(device.port)
-        self.reader = reader
-        self.transport = transport
+        self.loop = asyncio.get_running_loop()
+        self.is_readable: asyncio.Future[None] | None = None
 
     @classmethod
     async def open(cls, path: str, baudrate: int, *, dtr: bool = True) -> Self:
@@ -65,23 +64,37 @@ class SerialPort:
             device.open()
         except (OSError, OverflowError, ValueError) as error:
             raise OSError(problem(path, baudrate, error)) from None
-        reader = asyncio.StreamReader(limit=CHUNK)
-        transport, _ = await asyncio.get_running_loop().connect_read_pipe(
-            lambda: asyncio.StreamReaderProtocol(reader), device
-        )
-        return cls(device, reader, transport)
+        return cls(device)
 
     async def read(self) -> bytes:
-        """Wait for bytes, and return all that have arrived.
+        """Wait for bytes, and return those that have arrived.
 
         Raises:
-            OSError: The port is gone.
+            OSError: The port is gone, or was closed.
         """
-        with suppress(OSError):  # EIO, where others report the end of the stream
-            data = await self.reader.read(CHUNK)
-            if data:
-                return data
+        while self.device.is_open:
+            await self.wait()
+            try:
+                data = os.read(self.device.fileno(), CHUNK)
+            except BlockingIOError:
+                continue
+            except OSError:  # EIO, where others report the end of the stream; or it was closed
+                break
+            if not data:
+                break
+            return data
         raise self.gone()
+
+    async def wait(self) -> None:
+        """Wait for bytes, the end of the stream, or until the port is closed."""
+        descriptor = self.device.fileno()
+        self.is_readable = self.loop.create_future()
+        self.loop.add_reader(descriptor, set_done, self.is_readable)
+        try:
+            await self.is_readable
+        finally:
+            if self.device.is_open:
+                self.loop.remove_reader(descriptor)
 
     def write(self, data: bytes) -> None:
         """Hand bytes to the kernel, without waiting for them to be sent.
@@ -125,9 +138,18 @@ class SerialPort:
         return OSError(errno.ENODEV, f"{self.path} is gone; plug it in again")
 
     def close(self) -> None:
-        """Close the port once the kernel has sent what was written."""
-        self.transport.close()
-        self.device.close()
+        """Close the port once the kernel has sent what was written; a read ends."""
+        if self.device.is_open:
+            self.loop.remove_reader(self.device.fileno())
+            self.device.close()
+        if self.is_readable is not None:
+            set_done(self.is_readable)
+
+
+def set_done(future: asyncio.Future[None]) -> None:
+    """Set the result of a future that has none."""
+    if not future.done():
+        future.set_result(None)
 
 
 def problem(path: str, baudrate: int, error: Exception) -> str:
