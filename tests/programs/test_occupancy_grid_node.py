@@ -172,6 +172,32 @@ def test_a_submap_seen_from_the_side_has_no_picture() -> None:
     assert at(canvas, -0.1, -0.1) == percent(228)
 
 
+def test_only_the_last_submaps_are_painted_anew_if_the_others_have_not_changed() -> None:
+    """Cartographer changes the last two with each scan, and a map has hundreds of them."""
+    submaps = [
+        submap(RANDOM.integers(1, 99, (9, 9, 2)).astype(np.uint8), pose_at(n / 9, n, n))
+        for n in range(6)
+    ]
+    earlier = painted(*submaps)
+    submaps[-1] = submap(uniform(9, 9, 3, 9), pose_at(5 / 9, 5, 5))
+    canvas = Canvas(submaps, RESOLUTION, earlier.base)
+
+    assert len(list(canvas.strokes())) == 2
+    assert np.array_equal(canvas.occupancy(), painted(*submaps).occupancy())
+
+
+@pytest.mark.parametrize("changed", [0, 3, 5])
+def test_what_has_moved_is_painted_anew(changed: int) -> None:
+    """Also if it is the last submap that makes the map larger."""
+    submaps = [submap(uniform(9, 9, 20 + n, 0), pose_at(n / 9, n / 9, n)) for n in range(6)]
+    earlier = painted(*submaps)
+    submaps[changed] = submap(uniform(9, 9, 50, 0), pose_at(-2.0, -3.0))
+    canvas = Canvas(submaps, RESOLUTION, earlier.base)
+
+    assert len(list(canvas.strokes())) == 6
+    assert np.array_equal(canvas.occupancy(), painted(*submaps).occupancy())
+
+
 PLAIN = uniform(4, 4, 10, 0)
 
 
@@ -386,6 +412,21 @@ async def test_a_submap_that_cannot_be_used_does_not_hide_the_others(
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1
     assert r"submap (0, 0): submap_query has none: status 5 'none\nsuch'" in said[0]
+
+
+async def test_a_submap_whose_new_version_cannot_be_had_stays_as_it_was(
+    start: Start, cartographer: Cartographer
+) -> None:
+    """A hole in the map would be worse."""
+    cartographer.submaps = {0: texture(uniform(4, 4, 100, 0))}
+    start(OccupancyGridNode, FAST)
+    cartographer.list(a0=pose_at())
+    await cartographer.next_map(1)
+    cartographer.submaps[0] = texture(PLAIN, cells=b"")
+    cartographer.versions[0] = 1
+    cartographer.list(a0=pose_at(), a1=pose_at())
+
+    assert known(await cartographer.next_map(2)) == {percent(228)}
 
 
 async def test_a_service_that_does_not_answer_holds_nothing_up(

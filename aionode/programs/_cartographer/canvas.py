@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from aionode.programs._cartographer.submaps import Array, Submap
 
-__all__ = ["Canvas"]
+__all__ = ["Base", "Canvas"]
 
 PADDING: Final = 5
 """The cells around all submaps."""
@@ -29,6 +29,9 @@ DOWNSCALED: Final = 4 / 3
 WIDEST: Final = 16.0
 """The most cells of a submap, in each direction, that count for one cell of the map."""
 
+ACTIVE: Final = 2
+"""How many submaps Cartographer is still changing: the last ones."""
+
 MEDIUM: Final = 128
 """The intensity before the first submap."""
 
@@ -38,21 +41,41 @@ OCCUPANCY: Final = np.floor((1 - np.arange(256) / 255) * 100 + 0.5).astype(np.in
 """The occupancy in percent, by intensity."""
 
 
+class Base(NamedTuple):
+    """The part of a map that seldom changes.
+
+    Attributes:
+        submaps: The submaps in it.
+        start: Where the origin of the frame is, in cells.
+        intensity: What is painted.
+        seen: Which cells are painted.
+    """
+
+    submaps: list[Submap]
+    start: tuple[float, float]
+    intensity: Array
+    seen: Array
+
+
 class Canvas:
     """A map in the making.
 
     Args:
         submaps: The submaps; later ones are painted over earlier ones.
         resolution: The side of a cell in metres.
+        base: That of an earlier map, with which this one begins if it can.
 
     Attributes:
         origin: The lower left corner of the map, in metres.
+        base: The map without the submaps that will have changed next time; None before.
 
     Raises:
         ValueError: The map would be too large.
     """
 
-    def __init__(self, submaps: Sequence[Submap], resolution: float) -> None:
+    def __init__(
+        self, submaps: Sequence[Submap], resolution: float, base: Base | None = None
+    ) -> None:
         placed = []
         corners = []
         with np.errstate(over="ignore", invalid="ignore"):
@@ -74,13 +97,32 @@ class Canvas:
         self.placed = [
             (matrix, shift + start.astype(float), cells) for matrix, shift, cells in placed
         ]
-        self.intensity = np.full((height, width), MEDIUM, np.uint8)
-        self.seen = np.zeros((height, width), np.uint8)
-        self.origin = (-float(start[0]) * resolution, (float(start[1]) - height) * resolution)
+        self.submaps = list(submaps)
+        self.start = (float(start[0]), float(start[1]))
+        self.base: Base | None = None
+        self.done = 0
+        if base is not None and self.begins_with(base, (height, width)):
+            self.intensity, self.seen = base.intensity.copy(), base.seen.copy()
+            self.done = len(base.submaps)
+        else:
+            self.intensity = np.full((height, width), MEDIUM, np.uint8)
+            self.seen = np.zeros((height, width), np.uint8)
+        self.origin = (-self.start[0] * resolution, (self.start[1] - height) * resolution)
+
+    def begins_with(self, base: Base, shape: tuple[int, int]) -> bool:
+        """Return whether the first submaps have been painted in the same cells."""
+        count = len(base.submaps)
+        same_cells = (base.start, base.seen.shape) == (self.start, shape)
+        return same_cells and self.submaps[:count] == base.submaps
 
     def strokes(self) -> Iterator[bool]:
         """Paint the submaps, in order; yield True after each part, which takes a moment."""
-        for matrix, shift, cells in self.placed:
+        for at, (matrix, shift, cells) in enumerate(self.placed):
+            if at == len(self.placed) - ACTIVE:
+                layers = self.intensity.copy(), self.seen.copy()
+                self.base = Base(self.submaps[:at], self.start, *layers)
+            if at < self.done:
+                continue
             # A submap that is seen from the side has no picture.
             if abs(np.linalg.det(matrix)) < np.finfo(float).tiny:
                 continue

@@ -28,7 +28,7 @@ from aionode.interfaces.cartographer_ros_msgs.srv import SubmapQuery
 from aionode.interfaces.geometry_msgs.msg import Point, Pose, Quaternion
 from aionode.interfaces.nav_msgs.msg import MapMetaData, OccupancyGrid
 from aionode.interfaces.std_msgs.msg import Header
-from aionode.programs._cartographer.canvas import Canvas
+from aionode.programs._cartographer.canvas import Base, Canvas
 from aionode.programs._cartographer.submaps import (
     Array,
     Submap,
@@ -134,6 +134,7 @@ class OccupancyGridNode(Node):
         self.flags = flags
         self.submaps: dict[tuple[int, int], Submap] = {}
         self.painted: list[Submap] = []
+        self.base: Base | None = None
         self.map = (np.empty((0, 0), np.int8), (0.0, 0.0))
         self.frame_id = ""
         self.stamp = Time()
@@ -161,16 +162,17 @@ class OccupancyGridNode(Node):
             texture = known.texture if known else None
             try:
                 placement = placement_of(entry.pose)
-                if answers and (texture is None or texture.version != entry.submap_version):
-                    texture = await self.fetch(key)
-            except (RequestTimeoutError, ServiceUnavailableError):
-                answers = False  # the next list asks again, rather than each of these waiting
-                self.warn(
-                    "submap_query does not answer; cartographer_node has it, and this node needs it"
-                )
-            except (ValueError, ServiceError) as error:
+            except ValueError as error:
                 self.warn(f"submap {key}: {error}")
                 continue
+            if answers and (texture is None or texture.version != entry.submap_version):
+                try:
+                    texture = await self.fetch(key)
+                except (RequestTimeoutError, ServiceUnavailableError):
+                    answers = False  # the next list asks again, rather than each submap of this one
+                    self.warn("submap_query does not answer; it is a service of cartographer_node")
+                except (ValueError, ServiceError) as error:
+                    self.warn(f"submap {key}: {error}")
             if texture is None:
                 continue
             cells += texture.cells.shape[0] * texture.cells.shape[1]
@@ -235,10 +237,11 @@ class OccupancyGridNode(Node):
         Raises:
             ValueError: It would be too large.
         """
-        canvas = await asyncio.to_thread(Canvas, submaps, self.flags.resolution)
+        canvas = await asyncio.to_thread(Canvas, submaps, self.flags.resolution, self.base)
         strokes = canvas.strokes()
         while await asyncio.to_thread(next, strokes, False):
             pass
+        self.base = canvas.base
         return await asyncio.to_thread(canvas.occupancy), canvas.origin
 
     def warn(self, text: str) -> None:
