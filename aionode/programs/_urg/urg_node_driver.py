@@ -245,7 +245,7 @@ class UrgNode(Node):
         value = {each.name: each.value for each in self.get_parameters([*RANGES, *NUMBERS, FRAME])}
         first, last = sorted(limits.step(value[name]) for name in ("angle_min", "angle_max"))
         if first == last:
-            first, last = (first, last + 1) if first == limits.amin else (first - 1, last)
+            first, last = (first, last + 1) if first <= limits.amin else (first - 1, last)
         return Window(
             *(limits, max(first, 0), last),
             *(value["cluster"], value["default_user_latency"], value[FRAME]),

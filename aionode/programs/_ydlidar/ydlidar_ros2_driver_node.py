@@ -79,7 +79,7 @@ class YdlidarDriver(Node):
         self.patience_sec = CHECK_SEC * min(max(checks, 2), 100)
         self.count = 0
         self.parts: list[Points] = []
-        self.began_ns = 0
+        self.began_ns = self.size = 0
         self.lidar: Lidar | None = None
         self.has_run = self.has_failed = False
         self.wanted = asyncio.Event()
@@ -179,7 +179,7 @@ class YdlidarDriver(Node):
         packets = Packets(self.bits)
         clock, kind = wall_clock(self), lidar.kind()
         self.parts.clear()
-        self.began_ns = self.count = 0
+        self.began_ns = self.count = self.size = 0
         data = await lidar.start()
         heard, limit = clock.now(), self.patience_sec
         while lidar.is_scanning:
@@ -209,8 +209,10 @@ class YdlidarDriver(Node):
                 self.publish(joined(self.parts), now_ns, lidar)
             self.parts.clear()
             self.began_ns = now_ns
-        if sum(len(each.ranges) for each in self.parts) < MOST_POINTS:
+            self.size = 0
+        if self.size < MOST_POINTS:
             self.parts.append(points)
+            self.size += len(points.ranges)
 
     def publish(self, points: Points, now_ns: int, lidar: Lidar) -> None:
         """Publish a revolution that ends now."""
