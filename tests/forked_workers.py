@@ -9,6 +9,7 @@ Warnings are not sent, as pytest is told to make errors of them.
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import traceback
@@ -173,6 +174,7 @@ def work(session: pytest.Session, connection: Connection, number: int, count: in
     plugins.unregister(name="terminalreporter")
     plugins.register(Reporter(session.config, connection))
     capturing = cast("Any", plugins.get_plugin("capturemanager"))
+    atexit._clear()  # of the first process
     status = 1
     try:
         capturing.stop_global_capturing()  # into files that it shares with all workers
@@ -182,6 +184,7 @@ def work(session: pytest.Session, connection: Connection, number: int, count: in
             for item, following in zip(items, [*items[1:], None], strict=True):
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
                 connection.send(None)
+        atexit._run_exitfuncs()
         status = 0
     except BaseException:  # noqa: BLE001  # nothing may continue in the code of the first process
         capturing.stop_global_capturing()

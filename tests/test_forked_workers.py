@@ -20,10 +20,10 @@ def pytest_configure(config):
 """
 
 TESTS = """
-import os
+import atexit, os
 
 def test_that_passes():
-    pass
+    atexit.register(lambda: os.write(2, b"ended"))
 
 def test_that_fails():
     print("what it printed")
@@ -44,7 +44,8 @@ def run_tests(folder: Path, *arguments: str) -> str:
         (folder / name).write_text(TESTS)
     env = {**os.environ, "PYTHONPATH": str(Path(__file__).parent.parent)}
     command = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments]
-    return run(command, env=env, timeout=50, cwd=folder).stdout
+    done = run(command, env=env, timeout=50, cwd=folder)
+    return done.stdout + done.stderr
 
 
 def test_the_end_of_a_worker_fails_the_test_that_it_ran(tmp_path: Path) -> None:
@@ -61,6 +62,13 @@ def test_a_failed_test_shows_what_it_printed(tmp_path: Path) -> None:
 
     assert output.count("E       AssertionError: as expected") == 2
     assert output.count("Captured stdout call") == output.count("\nwhat it printed\n") == 2
+
+
+def test_a_worker_ends_what_its_tests_started(tmp_path: Path) -> None:
+    """Each calls the exit handlers that they have registered."""
+    output = run_tests(tmp_path, "-k", "passes")
+
+    assert output.count("ended") == 2
 
 
 def test_the_first_failure_may_end_the_run(tmp_path: Path) -> None:
