@@ -82,12 +82,14 @@ class Hokuyo:
         measuring: The command that started the scans; None if there are none.
         port: Where it listens.
         connections: How many there were.
+        ended: How the last one ended.
     """
 
     def __init__(self) -> None:
         self.heard: list[str] = []
         self.measuring: str | None = None
         self.port = self.connections = 0
+        self.ended = ""
         self.limits, self.state = dict(LIMITS), dict(STATE)
         self.answers: dict[str, bytes] = {}
         self.writer: Any = None
@@ -96,6 +98,15 @@ class Hokuyo:
         """Answer the commands of a connection."""
         self.connections += 1
         self.writer = writer
+        try:
+            await self.answer_all(reader)
+            self.ended = "closed"
+        except ConnectionError:
+            self.ended = "reset"
+        writer.close()
+
+    async def answer_all(self, reader: asyncio.StreamReader) -> None:
+        """Answer commands until there are no more."""
         while command := (await reader.readline()).decode().strip():
             self.heard.append(command)
             if command[:2] in {"MD", "ME", "ND", "NE"}:
@@ -103,7 +114,6 @@ class Hokuyo:
             elif command == "QT":
                 self.measuring = None
             self.send(self.answers.get(command[:2], self.usual_answer(command)))
-        writer.close()
 
     def usual_answer(self, command: str) -> bytes:
         """Return the answer of a lidar that is well."""
@@ -484,10 +494,13 @@ async def test_scip_1_is_switched_to_2(desk: Desk) -> None:
 
 
 async def test_the_end_of_the_node_stops_the_lidar(desk: Desk) -> None:
-    """Its laser would stay on otherwise."""
+    """Its laser would stay on otherwise; scans on their way must not reset the connection."""
     driver = await desk.begin()
+    for _ in range(200):
+        desk.lidar.scan(*[(1000,)] * 1081)
     driver.destroy_node()
-    await until(lambda: desk.lidar.heard[-1] == "QT")
+    await until(lambda: desk.lidar.ended)
+    assert (desk.lidar.heard[-1], desk.lidar.ended) == ("QT", "closed")
 
 
 async def test_diagnostics_say_what_the_lidar_is(desk: Desk) -> None:

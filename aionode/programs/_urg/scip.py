@@ -23,6 +23,7 @@ MOST_ECHOES: Final = 3
 CHUNK: Final = 65536
 ANSWER_SEC: Final = 1.0
 CONNECT_SEC: Final = 2.0
+CLOSE_SEC: Final = 0.3
 
 ZERO: Final = 0x30
 """The character of the digit 0; each character has six bits."""
@@ -297,11 +298,12 @@ class Scip:
         """
         return time_of(await self.command("TM1"))
 
-    def close(self) -> None:
-        """Stop the lidar, and close the connection."""
+    async def close(self) -> None:
+        """Stop the lidar, and close the connection; what is still on its way would reset it."""
         try:
-            self.send("QT")
-        except OSError:
+            async with asyncio.timeout(CLOSE_SEC):
+                await self.command("QT", "*")
+        except OSError:  # it is gone
             pass
         finally:
             self.link.close()

@@ -153,9 +153,8 @@ class UrgNode(Node):
                     self.complain(f"{error.strerror or error}; reconnecting")
                     pause_sec = RECONNECT_SEC if self.is_started else RETRY_SEC
                 finally:
-                    self.scip.close()
-                    self.scip = None
-                    self.is_started = False
+                    scip, self.scip, self.is_started = self.scip, None, False
+                    await scip.close()
             await clock.sleep(pause_sec)
 
     def complain(self, text: str) -> None:
