@@ -164,8 +164,18 @@ def test_a_coarser_map_has_the_mean_of_the_cells() -> None:
     assert at(canvas, -0.15, -0.15, 0.1) == percent(128 + 50)
 
 
+@pytest.mark.parametrize("resolution", [5e-324, 1e-200, 1e-9])
+def test_a_submap_far_smaller_than_a_cell_has_no_picture(resolution: float) -> None:
+    """Nor does it raise an error, whatever its numbers are."""
+    small = texture_of(texture(uniform(4, 4, 9, 0), resolution=resolution), 0)
+    place = placement_of(pose_at())
+    canvas = painted(Submap(place, small), submap(uniform(4, 4, 100, 0), pose_at()))
+
+    assert at(canvas, -0.1, -0.1) == percent(228)
+
+
 def test_a_submap_seen_from_the_side_has_no_picture() -> None:
-    """Its plane is upright, so it has no area in the map."""
+    """Its plane is upright."""
     upright = Pose(orientation=Quaternion(y=math.sqrt(0.5), w=math.sqrt(0.5)))
     canvas = painted(submap(uniform(4, 4, 9, 0), upright), submap(uniform(4, 4, 100, 0), pose_at()))
 

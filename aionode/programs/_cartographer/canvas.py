@@ -32,6 +32,9 @@ WIDEST: Final = 16.0
 ACTIVE: Final = 2
 """How many submaps Cartographer is still changing: the last ones."""
 
+SMALLEST: Final = 1e-12
+"""The least part of a cell of the map that a cell of a submap has to cover."""
+
 MEDIUM: Final = 128
 """The intensity before the first submap."""
 
@@ -123,10 +126,10 @@ class Canvas:
                 self.base = Base(self.submaps[:at], self.start, *layers)
             if at < self.done:
                 continue
-            # A submap that is seen from the side has no picture.
-            if abs(np.linalg.det(matrix)) < np.finfo(float).tiny:
+            back = inverse(matrix)
+            if back is None:
                 continue
-            brush = Brush(cells, np.linalg.inv(matrix), shift)
+            brush = Brush(cells, back, shift)
             corners = corners_of(cells, brush.margin) @ matrix.T + shift
             limits = self.seen.shape[::-1]
             left, top = (int(each) for each in np.clip(np.floor(corners.min(axis=0)), 0, limits))
@@ -148,6 +151,19 @@ class Canvas:
         """Return the occupancies of the map, with the lowest row first."""
         seen, intensity = self.seen[::-1], self.intensity[::-1]
         return np.where(seen, OCCUPANCY[intensity], np.int8(UNKNOWN))
+
+
+def inverse(matrix: Array) -> Array | None:
+    """Return the inverse of a matrix; None if a submap that is placed by it has no picture.
+
+    Such a submap is seen from the side, or far smaller than a cell of the map.
+    """
+    (a, b), (c, d) = matrix.tolist()
+    determinant = a * d - b * c
+    if abs(determinant) < SMALLEST:
+        return None
+    rows = (d, -b), (-c, a)
+    return np.array([[value / determinant for value in row] for row in rows])
 
 
 def corners_of(cells: Array, margin: float) -> Array:
