@@ -377,6 +377,7 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
         (CameraNode, {"sensor_mode": "1640x1232"}, "Expected .width.:.height. but got '1640x1232'"),
         (CameraNode, {"width": 640}, "width is 640 and height 0; use numbers above 0 for both"),
         (CameraNode, {"width": -1, "height": -1}, "width is -1 and height -1"),
+        (V4L2Camera, {"image_size": [640, 10**8]}, "use at most 16384 for each"),
         (CameraNode, {"FrameDurationLimits": [3, 2]}, "FrameDurationLimits is .*such as .33333"),
         (CameraNode, {"FrameDurationLimits": "30"}, "FrameDurationLimits is '30'"),
         (CameraNode, {"FrameDurationLimits": [0.1, 0.2]}, "FrameDurationLimits is "),

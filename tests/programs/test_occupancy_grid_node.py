@@ -280,6 +280,7 @@ def test_flags_are_written_as_in_gflags(words: list[str], flags: Flags, ignored:
         (["-resolution"], "-resolution has no value"),
         (["-resolution", "fine"], "-resolution is 'fine'; use a number from 0.001"),
         (["-resolution=nan"], "-resolution is 'nan'"),
+        (["-publish_period_sec=1e9"], "'1e9'; use a number from 0.001 to 100000"),
         (["-publish_period_sec", "0"], "-publish_period_sec is '0'"),
         (["-include_frozen_submaps=maybe"], "'maybe'; use true or false"),
         (["-noinclude_frozen_submaps", "-noinclude_unfrozen_submaps"], "makes no sense"),

@@ -6,6 +6,7 @@ import asyncio
 from typing import Any, Final
 
 from aionode import Node, QoSProfile
+from aionode.errors import CommandError
 from aionode.image import from_numpy
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from aionode.interfaces.std_msgs.msg import Header
@@ -17,6 +18,9 @@ from aionode.programs._wall_timer import create_wall_timer, wall_clock
 __all__ = ["Camera"]
 
 START_SEC: Final = 0.01
+MAX_SIDE: Final = 16_384
+"""The most pixels in each direction: more than any camera has, in less than a gigabyte."""
+
 RETRY_SEC: Final = 1.0
 """Delay after a failure before a camera is opened again."""
 
@@ -56,8 +60,12 @@ class Camera(Node):
         """Start publishing, as soon as the camera is there if it `may_come_later`.
 
         Raises:
-            CommandError: There is no camera, or no package to read it.
+            CommandError: There is no camera, no package to read it, or no room for its pictures.
         """
+        if max(self.size) > MAX_SIDE:
+            raise CommandError(
+                f"the camera should have {self.size} pixels; use at most {MAX_SIDE} for each"
+            )
         check_device(self.device, may_come_later=may_come_later)
         self.calibration = calibration
         image = f"{self.namespace}image_raw"

@@ -47,6 +47,9 @@ MAX_CELLS: Final = 1 << 27
 TELL_SEC: Final = 10.0
 """How often a problem is named that lasts."""
 
+NUMBERS: Final = (0.001, 100_000)
+"""The least and the largest number of a flag."""
+
 YES: Final = ("1", "t", "true", "y", "yes")
 NO: Final = ("0", "f", "false", "n", "no")
 """The values of a switch, as in gflags."""
@@ -112,7 +115,7 @@ def switch_of(name: str, text: str) -> bool:
 
 
 def number_of(name: str, text: str) -> float:
-    """Return a number above 0.
+    """Return a number of metres or seconds.
 
     Raises:
         CommandError: It is none.
@@ -121,8 +124,9 @@ def number_of(name: str, text: str) -> float:
         number = float(text)
     except ValueError:
         number = math.nan
-    if not 0.001 <= number < math.inf:
-        raise CommandError(f"-{name} is {text!r}; use a number from 0.001")
+    low, high = NUMBERS
+    if not low <= number <= high:
+        raise CommandError(f"-{name} is {text!r}; use a number from {low} to {high}")
     return number
 
 
