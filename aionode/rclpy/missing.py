@@ -35,7 +35,7 @@ INSTEAD: Final = {
     "py_trees": "`pip install 'aionode[py-trees]'` brings it",
     "requests": "`pip install 'aionode[desktop]'` brings it",
     "scipy": "`pip install 'aionode[desktop]'` brings it",
-    "serial": "`pip install 'aionode[desktop]'` brings it",
+    "serial": "`pip install 'aionode[serial]'` brings it",
     "transforms3d": "`pip install 'aionode[desktop]'` brings it",
 }
 """The replacement of a package, or where to get it."""

@@ -40,7 +40,7 @@ def test_a_known_package_has_its_own_way(module: str, part: str) -> None:
     [
         ("cv2", "opencv", "opencv-python-headless"),
         ("scipy.spatial", "desktop", "scipy"),
-        ("serial", "desktop", "pyserial"),
+        ("serial", "serial", "pyserial"),
         ("xacro", "xacro", "xacro"),
     ],
 )
