@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import functools
+from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.support.checking_loop import CheckingLoop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 async def forget() -> None:
@@ -44,6 +49,23 @@ def test_a_forgotten_coroutine_is_reported_with_where_it_was_created() -> None:
         pytest.warns(RuntimeWarning, match=r"never awaited\n(.*\n)*.*leave_out_an_await"),
     ):
         runner.run(leave_out_an_await())
+
+
+class Caller:
+    """An object with a coroutine method."""
+
+    async def call(self) -> None:
+        """Do nothing."""
+
+
+@pytest.mark.parametrize("function", [forget, functools.partial(forget), Caller().call])
+def test_a_coroutine_function_is_no_callback(function: Callable[[], None]) -> None:
+    """The loop would call it, and nobody would await the coroutine."""
+    with (
+        asyncio.Runner(debug=False, loop_factory=CheckingLoop) as runner,
+        pytest.raises(TypeError, match=r"coroutines cannot be used with call_soon\(\)"),
+    ):
+        runner.get_loop().call_soon(function)
 
 
 def test_futures_record_no_stack() -> None:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import functools
+import inspect
+import sys
+from typing import Any
 
 
 class CheckingLoop(asyncio.SelectorEventLoop):
@@ -24,3 +28,18 @@ class CheckingLoop(asyncio.SelectorEventLoop):
     def get_debug(self) -> bool:
         """Return False, for futures, tasks and handles."""
         return False
+
+    def _set_coroutine_origin_tracking(self, enabled: bool) -> None:
+        """Record of each coroutine the line that created it, and not ten."""
+        super()._set_coroutine_origin_tracking(enabled)  # type: ignore[misc]  # of asyncio
+        if enabled:
+            sys.set_coroutine_origin_tracking_depth(1)
+
+    def _check_callback(self, callback: Any, method: str) -> None:
+        """Check only what may be a coroutine or a coroutine function."""
+        if (code := getattr(callback, "__code__", None)) is not None:
+            suspicious = code.co_flags & inspect.CO_COROUTINE
+        else:
+            suspicious = isinstance(callback, functools.partial) or not callable(callback)
+        if suspicious:
+            super()._check_callback(callback, method)  # type: ignore[misc]  # of asyncio

@@ -79,8 +79,7 @@ def test_only_so_many_subjects_are_told_apart(caplog: pytest.LogCaptureFixture) 
     assert drops.of(Drop.MALFORMED).total() == 2 * SUBJECTS
 
 
-@pytest.mark.parametrize("drop", Drop)
-def test_each_drop_happens_somewhere(drop: Drop) -> None:
+def test_each_drop_happens_somewhere() -> None:
     """A kind that is never recorded is useless."""
     named = {
         node.attr
@@ -89,7 +88,7 @@ def test_each_drop_happens_somewhere(drop: Drop) -> None:
         if isinstance(node, ast.Attribute) and name != "drops.py"
     }
 
-    assert drop.name in named
+    assert [drop for drop in Drop if drop.name not in named] == []
 
 
 def test_nothing_unreadable_is_left_out_without_a_word() -> None:
