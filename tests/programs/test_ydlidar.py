@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.interfaces.std_srvs.srv import Empty
+from aionode.programs._serial import SerialPort
 from aionode.programs._ydlidar import ydlidar_ros2_driver_node
 from aionode.programs._ydlidar.packets import SAMPLES, Kind, Packets
 from aionode.programs._ydlidar.ydlidar_ros2_driver_node import YdlidarDriver
@@ -406,6 +407,21 @@ async def test_the_end_of_the_node_stops_the_lidar(desk: Desk) -> None:
     desk.device.heard.clear()
     driver.destroy_node()
     await until(lambda: desk.device.heard == [FORCE_STOP, STOP])
+
+
+@pytest.mark.parametrize("runs_with_dtr", [True, False])
+async def test_the_motor_turns_by_dtr_while_it_scans(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, runs_with_dtr: bool
+) -> None:
+    """With it or without it; a pseudo-terminal has no such line."""
+    set_to: list[bool] = []
+    monkeypatch.setattr(SerialPort, "set_dtr", lambda _, *, is_on: set_to.append(is_on))
+    driver = await desk.begin(support_motor_dtr=runs_with_dtr)
+    await until(lambda: runs_with_dtr in set_to)
+    assert set_to[-1] == runs_with_dtr
+    assert driver.lidar.port.device.dtr != runs_with_dtr  # as the port was opened
+    await desk.call("stop_scan")
+    assert set_to[-1] != runs_with_dtr
 
 
 # Failures
