@@ -303,3 +303,22 @@ async def test_a_type_that_nobody_knows_is_named_once(
 
     assert domains.bridges[0].output is None
     assert caplog.text.count("nowhere_msgs/msg/Thing") == 1
+
+
+async def test_a_type_that_nobody_knows_is_asked_for_once_a_second(
+    domains: Domains, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every node that uses the type is asked, and the check runs ten times a second."""
+    unknown = Route("/a", "nowhere_msgs/msg/Thing", 2, 3, "/a", waits_for_publisher=False)
+    await domains.bridge(unknown)
+    asked = []
+
+    async def find_message(name: str) -> Any:
+        asked.append(name)
+        raise LookupError(name)
+
+    monkeypatch.setattr(domains.bridges[0].source, "find_message", find_message)
+    for _ in range(20):
+        await domains.bridges[0].check()
+
+    assert len(asked) == 2

@@ -83,6 +83,7 @@ class Bridge:
             kind = await self.source.find_message(route.type_name)
         except (AionodeError, LookupError) as error:
             self.warn(f"{route.topic}: {error}")
+            self.seen = -CHECKS  # every node of the type is asked: once a second is enough
             return
         qos = self.qos_for(offered)
         self.output = self.target.create_publisher(kind, route.renamed, qos)
