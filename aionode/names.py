@@ -58,6 +58,7 @@ NODE_NAME_MAX_LENGTH = 255
 TOPIC_MAX_LENGTH = 247  # DDS allows 255, and rmw keeps 8 for a prefix and a suffix
 NAMESPACE_MAX_LENGTH = 245  # leaves room for "/x"
 
+ORDINARY = re.compile("~?[A-Za-z0-9_/]+")
 PLAIN = re.compile("[A-Za-z0-9_/%@:,.+~-]*")
 TYPE_NAME = re.compile("[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)+")
 
@@ -147,6 +148,8 @@ def topic_name_problem(name: str) -> Problem | None:
 
 def character_problem(name: str) -> Problem | None:
     """Return the problem of the first character that is not allowed where it is, or None."""
+    if ORDINARY.fullmatch(name):
+        return None
     opened = -1  # index of the open brace
     for i, char in enumerate(name):
         if char == "~":

@@ -9,6 +9,7 @@ import inspect
 import os
 import signal
 import sys
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -224,7 +225,7 @@ def pytest_asyncio_loop_factories(
 @pytest.fixture(autouse=True)
 def own_imports() -> Iterator[None]:
     """Keep other tests from importing what `install` finds for this one, and from its workspace."""
-    before, imported = list(sys.meta_path), set(sys.modules)
+    before, newest = list(sys.meta_path), next(reversed(sys.modules))
     yield
     sys.meta_path[:] = before
     if loaded := sys.modules.get("aionode._packages._here"):
@@ -232,7 +233,7 @@ def own_imports() -> Iterator[None]:
     if loaded := sys.modules.get("aionode.idl.named"):
         loaded.NAMED.__init__()
         loaded.SEEN.clear()
-        for name in sys.modules.keys() - imported:  # examining all of them takes 1.7 ms
+        for name in [*takewhile(newest.__ne__, reversed(sys.modules))]:  # all take 1.7 ms
             if isinstance(getattr(sys.modules[name], "__loader__", None), loaded.NamedLoader):
                 del sys.modules[name]
 

@@ -14,16 +14,15 @@ import os
 import signal
 import traceback
 import warnings
-from collections import deque
+from collections import defaultdict, deque
 from dataclasses import dataclass
-from itertools import groupby
 from multiprocessing.connection import Connection, Pipe, wait
 from typing import TYPE_CHECKING, Any, Final, NoReturn, cast
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable
 
 __all__ = ["ForkedWorkers"]
 
@@ -77,13 +76,14 @@ class ForkedWorkers:
                 os.kill(worker.pid, signal.SIGTERM)
         return True
 
-    def _groups(self, items: list[pytest.Item]) -> Iterator[Group]:
-        """Yield the tests of each file; or each test, if files may be split."""
-        for _, group in groupby(
-            range(len(items)),
-            lambda index: index if self._splits_files else items[index].path,
-        ):
-            yield list(group)
+    def _groups(self, items: list[pytest.Item]) -> Iterable[Group]:
+        """Return the tests of each file or `xdist_group`; or each test, if files may be split."""
+        groups = defaultdict[object, Group](list)
+        for index, item in enumerate(items):
+            mark = item.get_closest_marker("xdist_group")
+            together = mark.args[0] if mark else item.path
+            groups[index if self._splits_files else together].append(index)
+        return groups.values()
 
     def _fork(self, session: pytest.Session) -> None:
         """Start a worker, and give it the next group."""

@@ -13,7 +13,7 @@ from aionode.gateway import Gateway, Policy
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.node import Node
 from examples.web_page_robot import Robot
-from tests.support.chromium import CHROMIUM, chromium
+from tests.support.chromium import IN_A_BROWSER, chromium
 from tests.support.waiting import until
 from tests.support.web_server import web_server
 
@@ -21,10 +21,7 @@ if TYPE_CHECKING:
     from aionode.engine.context import Context
     from tests.support.chromium import Browser
 
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
-    pytest.mark.one_loop,
-]
+pytestmark = IN_A_BROWSER
 
 READS = {
     "fetch": "fetch(`${base}/topics`).then(text)",
@@ -156,6 +153,7 @@ async def test_a_page_of_another_origin_reads_and_does_nothing(context: Context)
         assert gateway.stats.sessions == {}
 
 
+@pytest.mark.slow
 async def test_a_page_whose_origin_is_listed_reads_and_writes(context: Context) -> None:
     """This shows that what the other page cannot do is not refused for another reason.
 

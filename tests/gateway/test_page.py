@@ -15,7 +15,7 @@ from aionode.image import compress, from_numpy, to_numpy
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.node import Node
 from examples.web_page_robot import POLICY, Robot
-from tests.support.chromium import CHROMIUM, chromium
+from tests.support.chromium import IN_A_BROWSER, chromium
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Sequence
@@ -24,10 +24,7 @@ if TYPE_CHECKING:
     from aionode.interfaces.sensor_msgs.msg import Image
     from tests.support.chromium import Page
 
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
-    pytest.mark.one_loop,
-]
+pytestmark = IN_A_BROWSER
 
 
 def driving(ttl_sec: float = 30.0) -> Policy:
@@ -167,6 +164,7 @@ async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
         assert set(await page.value(origins)) == {await page.value("location.origin")}
 
 
+@pytest.mark.slow
 async def test_the_page_sets_parameters_and_calls_services(context: Context) -> None:
     """The node's reason for a refusal is shown."""
     async with scene(context) as (page, robot, *_):
@@ -205,6 +203,7 @@ async def test_letting_go_stops(context: Context) -> None:
         assert {each.linear.x for each in commands} == {0.5, 0.0}
 
 
+@pytest.mark.slow
 async def test_the_stop_button_ends_driving(context: Context) -> None:
     """Even while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
@@ -232,6 +231,7 @@ async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
         assert commands[-1] == Twist()
 
 
+@pytest.mark.slow
 async def test_hiding_the_tab_stops(context: Context) -> None:
     """The page itself stops: browsers run the scripts of hidden tabs only once a second."""
     async with scene(context, driving()) as (page, robot, _, commands, _):
@@ -243,6 +243,7 @@ async def test_hiding_the_tab_stops(context: Context) -> None:
         assert not await page.value("document.querySelector('#teleop .armed').checked")
 
 
+@pytest.mark.slow
 async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) -> None:
     """Browsers do so to save power; the page is notified, and its timers stand still."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
@@ -254,6 +255,7 @@ async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) 
         assert commands[-1] == Twist()
 
 
+@pytest.mark.slow
 async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
     """Neither end is notified: the gateway sends the stop after the time to live.
 
@@ -275,6 +277,7 @@ async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
         assert not any(command.linear.x for command in commands[count:])
 
 
+@pytest.mark.slow
 async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
     """A script that never returns sends nothing: the gateway stops after the time to live."""
     async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
@@ -286,6 +289,7 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
         assert commands[-1] == Twist()
 
 
+@pytest.mark.slow
 async def test_a_key_drives_while_it_is_held(context: Context) -> None:
     """Stamped commands work too; the gateway sets the stamp by the robot's clock."""
     policy = Policy.default(allow_write=True)
@@ -326,6 +330,7 @@ SHOWN = {
 """Encodings of images that the page shows itself, with the type and number of their channels."""
 
 
+@pytest.mark.slow
 async def test_pictures_are_those_that_the_gateway_makes(context: Context) -> None:
     """The same rules exist in JavaScript and in Python; a pixel may differ by rounding."""
     random = np.random.default_rng(7)
@@ -355,6 +360,7 @@ def drawn(message: Image) -> str:
     return f"import('./page/picture.js').then((it) => Array.from(it.picture({fields}).data))"
 
 
+@pytest.mark.slow
 async def test_a_picture_larger_than_its_data_is_an_error(context: Context) -> None:
     """A message of a few bytes could have the browser take gigabytes."""
     async with scene(context) as (page, *_):
@@ -365,6 +371,7 @@ async def test_a_picture_larger_than_its_data_is_an_error(context: Context) -> N
             )
 
 
+@pytest.mark.slow
 async def test_numbers_that_hardly_differ_can_be_plotted(context: Context) -> None:
     """With nanoseconds since 1970, grid lines may be closer than two numbers can be."""
     async with scene(context) as (page, *_):
@@ -378,6 +385,7 @@ async def test_numbers_that_hardly_differ_can_be_plotted(context: Context) -> No
         )
 
 
+@pytest.mark.slow
 async def test_pictures_have_their_colours(context: Context) -> None:
     """Raw, without a number in it, and compressed."""
     red = np.full((60, 80, 3), (200, 30, 0), np.uint8)
@@ -406,6 +414,7 @@ async def test_pictures_have_their_colours(context: Context) -> None:
             )
 
 
+@pytest.mark.slow
 async def test_a_second_page_is_told_who_drives(context: Context) -> None:
     """Its pad is released, because its commands have no effect."""
     async with scene(context, driving()) as (page, robot, _, commands, _), chromium() as other:

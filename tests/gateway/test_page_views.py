@@ -20,7 +20,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.message import ActionType, Message, float64
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.tf import StaticTransformBroadcaster
-from tests.support.chromium import CHROMIUM, chromium
+from tests.support.chromium import IN_A_BROWSER, chromium
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -30,10 +30,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from tests.support.chromium import Page
 
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
-    pytest.mark.one_loop,
-]
+pytestmark = IN_A_BROWSER
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 WRITING = Policy.default(allow_write=True)
@@ -160,7 +157,10 @@ MESSAGES: dict[str, Any] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("topic", MESSAGES)
+@pytest.mark.parametrize(
+    "topic",
+    [each if each == "/scan" else pytest.param(each, marks=pytest.mark.slow) for each in MESSAGES],
+)
 async def test_a_layer_is_drawn_from_above(node: Node, topic: str) -> None:
     """In the fixed frame, to which the transforms lead."""
     message = MESSAGES[topic]()
@@ -176,6 +176,7 @@ async def test_a_layer_is_drawn_from_above(node: Node, topic: str) -> None:
             assert await reds(page) > 3
 
 
+@pytest.mark.slow
 async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
     """Without a transform, or with a map whose size does not match its data."""
     lost, wrong = odometry(), grid()
@@ -198,6 +199,7 @@ async def test_a_layer_says_why_it_cannot_be_drawn(node: Node) -> None:
         assert "/wrong: 7 \u00d7 2 cells of 0.5 m with 6 values are not a map" in caption
 
 
+@pytest.mark.slow
 async def test_what_nobody_looks_at_is_not_subscribed_to(node: Node) -> None:
     """A robot publishes many transforms and large clouds; the topic list measures neither."""
     publisher = node.create_publisher(PointCloud2, "/points", 1)
@@ -238,6 +240,7 @@ async def test_a_click_sends_a_goal_pose(node: Node) -> None:
         assert not await page.value("document.querySelector('#scene .arm').checked")
 
 
+@pytest.mark.slow
 async def test_a_click_sends_the_goal_of_an_action(node: Node) -> None:
     """Its feedback is shown, and STOP cancels it."""
     ended: list[str] = []
@@ -265,6 +268,7 @@ async def test_a_click_sends_the_goal_of_an_action(node: Node) -> None:
         assert ended == ["cancelled"]
 
 
+@pytest.mark.slow
 async def test_a_goal_that_the_policy_refuses_is_reported(node: Node) -> None:
     """The page only requests it; the gateway decides."""
     got: list[PoseStamped] = []
@@ -350,6 +354,7 @@ async def test_the_model_is_drawn_in_space(node: Node) -> None:
         assert red > 500
 
 
+@pytest.mark.slow
 async def test_meshes_are_read(node: Node) -> None:
     """In each format, as triangles in metres with z upwards."""
     stl = "solid a\nfacet normal 0 0 1\nouter loop\n" + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
@@ -386,6 +391,7 @@ async def test_meshes_are_read(node: Node) -> None:
                 await corners(name, text)
 
 
+@pytest.mark.slow
 async def test_frames_are_shown_as_a_tree(node: Node) -> None:
     """With their poses in their parents; names of the robot are shown as text."""
     place(node, "base_link", "map", 1.0, 2.0)
@@ -403,6 +409,7 @@ async def test_frames_are_shown_as_a_tree(node: Node) -> None:
         assert rows[2] == ["<i>lidar", "2em", "0.250, 0.000, 0.000  0.0°"]
 
 
+@pytest.mark.slow
 async def test_transforms_in_a_circle_end(node: Node) -> None:
     """Two programs may each claim that the other's frame is the parent."""
     place(node, "a", "b", 1.0, 0.0)
@@ -415,6 +422,7 @@ async def test_transforms_in_a_circle_end(node: Node) -> None:
         await show(page, "/odom")
 
 
+@pytest.mark.slow
 async def test_there_may_be_several_plots_and_pictures(node: Node) -> None:
     """Each picture has its own topic; numbers are added to the newest plot."""
     for number, name in enumerate(("/left", "/right")):

@@ -16,6 +16,7 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
+import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
@@ -34,6 +35,13 @@ CHROMIUM: Final = next(
     ),
     None,
 )
+IN_A_BROWSER: Final = [
+    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
+    pytest.mark.one_loop,
+    pytest.mark.xdist_group("chromium"),  # its start takes three seconds of processor time
+]
+"""The marks of tests with a browser, all of which run in one worker."""
+
 OPTIONS: Final = (
     "--headless=new",
     "--no-sandbox",  # which does not work for root
