@@ -344,12 +344,14 @@ async def test_the_frequency_is_set_in_steps(desk: Desk) -> None:
     assert desk.device.speed == 930
 
 
-async def test_an_absurd_frequency_is_left_alone(desk: Desk) -> None:
+async def test_an_absurd_frequency_is_left_alone(
+    desk: Desk, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Steps from there would take years."""
     desk.device.model, desk.device.speed = G2B, 2**32 - 1
-    driver = await desk.begin(frequency=9.3, lidar_type=1)
+    await desk.begin(frequency=9.3, lidar_type=1)
     assert SLOWER not in desk.device.heard
-    assert driver.lidar.frequency == 9.3
+    assert "Current scan frequency: 9.30Hz" in capsys.readouterr().err
 
 
 async def test_the_sample_rate_is_set(desk: Desk) -> None:
@@ -399,6 +401,37 @@ async def test_stop_scan_stops_the_lidar_until_start_scan(desk: Desk) -> None:
     await until(lambda: SCAN in desk.device.heard)
     desk.device.turn(1000, times=2)
     await desk.scan()
+
+
+async def test_stop_scan_stops_a_lidar_that_is_being_started(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its scans and its motor, whenever the answer to the command to scan arrives."""
+    motor: list[bool] = []
+    monkeypatch.setattr(SerialPort, "set_dtr", lambda _, *, is_on: motor.append(is_on))
+    answer = desk.device.answer
+    monkeypatch.setattr(desk.device, "answer", lambda each: None if each == SCAN else answer(each))
+    await desk.begin(support_motor_dtr=True)
+    await desk.call("stop_scan")
+    desk.device.heard.clear()
+    answer(SCAN)
+    await until(lambda: desk.device.heard == [FORCE_STOP, STOP])
+    assert motor[-2:] == [True, False]
+
+
+async def test_stop_scan_is_heard_just_before_the_lidar_is_started(desk: Desk) -> None:
+    """It is not undone by the command to scan that follows."""
+    desk.start(YdlidarDriver, port=desk.device.path, **PLAIN)
+    await until(lambda: desk.device.heard.count(STOP) == 2)
+    await desk.call("stop_scan")
+    await until(lambda: SCAN in desk.device.heard and desk.device.heard[-1] == STOP)
+
+
+async def test_scans_are_published_before_simulated_time_runs(desk: Desk) -> None:
+    """The lidar turns whatever the time is."""
+    await desk.begin(use_sim_time=True)
+    desk.device.turn(1000, 2000, times=2)
+    assert (await desk.scan()).header.stamp.sec == 0
 
 
 async def test_the_end_of_the_node_stops_the_lidar(desk: Desk) -> None:

@@ -89,7 +89,6 @@ class Lidar:
         shows_bytes: Whether what is sent and answered is logged.
 
     Attributes:
-        is_scanning: Whether it was told to scan.
         model: The code of its model; 0 while that is not known.
         firmware: Its version, as major and minor number.
         rates: The possible sample rates, in thousands of points per second.
@@ -115,7 +114,6 @@ class Lidar:
         self.has_answers = has_answers
         self.runs_with_dtr = runs_with_dtr
         self.shows_bytes = shows_bytes
-        self.is_scanning = False
         self.model = 0
         self.firmware = (0, 0)
         self.rates: tuple[int, ...] = ()
@@ -336,7 +334,6 @@ class Lidar:
         self.stop()
         await self.clock.sleep(PAUSE_SEC)
         data = b""
-        self.is_scanning = True
         try:
             if self.has_answers:
                 data = await self.ask(SCAN, IS_SCAN, SCAN_SIZE)
@@ -349,7 +346,6 @@ class Lidar:
 
     def stop(self) -> None:
         """Stop the scans and the motor, if the port is still there."""
-        self.is_scanning = False
         with suppress(OSError):
             self.send(FORCE_STOP)
             self.send(STOP)

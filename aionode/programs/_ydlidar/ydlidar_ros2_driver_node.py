@@ -79,8 +79,8 @@ class YdlidarDriver(Node):
         self.patience_sec = CHECK_SEC * min(max(checks, 2), 100)
         self.count = 0
         self.parts: list[Points] = []
-        self.began_ns = self.size = 0
-        self.lidar: Lidar | None = None
+        self.began_ns: int | None = None
+        self.size = 0
         self.has_run = self.has_failed = False
         self.wanted = asyncio.Event()
         self.wanted.set()
@@ -151,7 +151,7 @@ class YdlidarDriver(Node):
             OSError: There is no lidar, or it is gone.
         """
         port = await SerialPort.open(self.path, self.baudrate, dtr=not self.has_dtr)
-        self.lidar = lidar = Lidar(
+        lidar = Lidar(
             port,
             self.lidar_type,
             self.get_logger(),
@@ -171,7 +171,7 @@ class YdlidarDriver(Node):
             port.close()
 
     async def scan(self, lidar: Lidar) -> None:
-        """Publish scans until the lidar is told to stop.
+        """Publish scans until they are no longer wanted.
 
         Raises:
             OSError: It sends no packets, or the port is gone.
@@ -179,10 +179,10 @@ class YdlidarDriver(Node):
         packets = Packets(self.bits)
         clock, kind = wall_clock(self), lidar.kind()
         self.parts.clear()
-        self.began_ns = self.count = self.size = 0
+        self.began_ns, self.count, self.size = None, 0, 0
         data = await lidar.start()
         heard, limit = clock.now(), self.patience_sec
-        while lidar.is_scanning:
+        while self.wanted.is_set():
             found = packets.feed(data)
             for packet in found:
                 self.take(packet, packet.points(kind), lidar)
@@ -199,14 +199,15 @@ class YdlidarDriver(Node):
                     data = await lidar.port.read()
             except TimeoutError:
                 pass
+        lidar.stop()
         self.get_logger().info("Lidar has stopped!")
 
     def take(self, packet: Packet, points: Points, lidar: Lidar) -> None:
         """Add a packet to the revolution; publish the one that ends with it."""
         if packet.is_start:
             now_ns = self.get_clock().now().nanoseconds
-            if self.began_ns and self.parts:
-                self.publish(joined(self.parts), now_ns, lidar)
+            if self.began_ns is not None:
+                self.publish(joined(self.parts), self.began_ns, now_ns, lidar)
             self.parts.clear()
             self.began_ns = now_ns
             self.size = 0
@@ -214,10 +215,10 @@ class YdlidarDriver(Node):
             self.parts.append(points)
             self.size += len(points.ranges)
 
-    def publish(self, points: Points, now_ns: int, lidar: Lidar) -> None:
+    def publish(self, points: Points, began_ns: int, now_ns: int, lidar: Lidar) -> None:
         """Publish a revolution that ends now."""
         size = len(points.ranges)
-        seconds = max(now_ns - self.began_ns, 0) / 1e9
+        seconds = max(now_ns - began_ns, 0) / 1e9
         if not self.count:
             self.count = self.fixed_count(size, seconds, lidar)
             self.has_run, self.has_failed = True, False
@@ -225,7 +226,7 @@ class YdlidarDriver(Node):
         count = self.count if self.is_fixed else size
         scan = scan_of(points, self.form, max(count, 2), lidar.offset)
         scan.scan_time, scan.time_increment = seconds, seconds / size
-        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(self.began_ns, 1_000_000_000)
+        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(began_ns, 1_000_000_000)
         self.publisher.publish(scan)
 
     def fixed_count(self, size: int, seconds: float, lidar: Lidar) -> int:
@@ -241,8 +242,6 @@ class YdlidarDriver(Node):
     def on_stop_scan(self, _: Any, response: Any) -> Any:
         """Stop the lidar until `start_scan` is called."""
         self.wanted.clear()
-        if self.lidar is not None:
-            self.lidar.stop()
         return response
 
     def on_start_scan(self, _: Any, response: Any) -> Any:
