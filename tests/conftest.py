@@ -5,11 +5,14 @@ from __future__ import annotations
 import asyncio
 import functools
 import gc
+import importlib.util
 import inspect
 import os
 import signal
+import subprocess
 import sys
 from itertools import takewhile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -20,7 +23,6 @@ from hypothesis.internal.conjecture import providers
 from aionode import rclpy
 from aionode.node import Node
 from tests.bytecode import share_bytecode
-from tests.forked_workers import ForkedWorkers
 from tests.support.checking_loop import CheckingLoop
 
 if TYPE_CHECKING:
@@ -116,23 +118,35 @@ everything that arrives. On uvloop, tests elsewhere have the mark `second_loop`.
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
 def pytest_cmdline_main(config: pytest.Config) -> None:
-    """Run each file in one worker, as its tests share what they start, and keep the order.
-
-    Coverage is counted in the workers of pytest-xdist only.
-    """
-    option = config.option
+    """Run each file in one worker, as its tests share what they start, and keep the order."""
     if not config.getoption("numprocesses", None):
         return
-    if sys.platform == "linux" and not config.getoption("cov_source", None) and not option.usepdb:
-        automatic = option.numprocesses in ("auto", "logical")
-        count = pytest_xdist_auto_num_workers() if automatic else option.numprocesses
-        workers = ForkedWorkers(count, splits_files=option.dist == "load")
-        config.pluginmanager.register(workers, "forked-workers")
-        option.numprocesses, option.dist = None, "no"
-        option.benchmark_disable = True  # as with pytest-xdist
-    elif option.dist == "no":
-        option.dist = "loadfile"
-        option.loadscopereorder = False
+    if config.option.dist == "no":
+        config.option.dist = "loadfile"
+        config.option.loadscopereorder = False
+    if not is_compiled(Path(__file__).with_name("test_exports.py")):
+        compile_once(config.args)
+
+
+def is_compiled(test: Path) -> bool:
+    """Return whether this Python has compiled a file of tests, as pytest does it."""
+    folder = Path(importlib.util.cache_from_source(str(test))).parent
+    return any(folder.glob(f"{test.stem}.{sys.implementation.cache_tag}-pytest-*.pyc"))
+
+
+def compile_once(arguments: list[str]) -> None:
+    """Collect the tests in one process, so that not every worker compiles all imported modules.
+
+    In a fresh clone or environment, this takes more than ten seconds of processor time.
+    """
+    subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-qq", *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={name: value for name, value in os.environ.items() if name != "PYTEST_ADDOPTS"},
+        check=False,  # the workers report what cannot be collected
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -178,7 +192,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                     item.add_marker("stress")
                 elif not item.nodeid.startswith(BOTH_LOOPS):
                     item.add_marker("second_loop")
-    if hasattr(config, "workerinput") or config.pluginmanager.has_plugin("forked-workers"):
+    if hasattr(config, "workerinput"):  # of pytest-xdist
         items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
 
 

@@ -167,7 +167,6 @@ PAGE = Policy.parse("""
 
 @pytest.mark.slow
 @pytest.mark.one_loop
-@pytest.mark.xdist_group("chromium")
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 async def test_the_page_of_the_gateway_begins_and_ends_episodes(tmp_path: Path) -> None:
     """In its Services panel, from a telephone beside the robot."""

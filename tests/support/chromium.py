@@ -38,7 +38,6 @@ CHROMIUM: Final = next(
 IN_A_BROWSER: Final = [
     pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
     pytest.mark.one_loop,
-    pytest.mark.xdist_group("chromium"),  # its start takes three seconds of processor time
 ]
 """The marks of tests with a browser, all of which run in one worker."""
 

@@ -66,7 +66,6 @@ def test_roslib_of_npm(roslib: str, port: str) -> None:
     subprocess.run(["node", HERE / "roslib_node.mjs", port, roslib], check=True, timeout=50)
 
 
-@pytest.mark.xdist_group("chromium")
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 async def test_roslib_of_npm_in_a_browser(roslib: str) -> None:
     """Pages use this library: here a page of another origin, which the policy lists."""
