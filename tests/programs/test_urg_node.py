@@ -19,7 +19,7 @@ from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.sensor_msgs.msg import LaserScan, MultiEchoLaserScan
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.programs._urg import urg_node_driver
-from aionode.programs._urg.scip import MOST_BYTES, Reply, Scip, echoes_in
+from aionode.programs._urg.scip import MOST_BYTES, Reply, Scip, Socket, echoes_in
 from aionode.programs._urg.urg_node_driver import UrgNode
 from tests.programs.conftest import Start
 from tests.support.waiting import until
@@ -388,6 +388,13 @@ async def test_a_lidar_that_comes_later_is_found(
     driver.port = lidar.port
     await until(lambda: driver.is_started)
     assert (text + capsys.readouterr().err).count("cannot be reached") == 1
+
+
+@pytest.mark.parametrize("host", ["192.168..10", "a" * 70, "a\0b"])
+async def test_an_address_that_is_none_is_named(host: str) -> None:
+    """Python's own error is about encodings."""
+    with pytest.raises(OSError, match="is no address and no name of a host; check ip_address"):
+        await Socket.open(host, 10940)
 
 
 @pytest.mark.parametrize(

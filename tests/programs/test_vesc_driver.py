@@ -298,10 +298,14 @@ async def test_a_vesc_that_reads_nothing_blocks_nobody(car: Car) -> None:
             {"port": "x", "speed_max": math.nan},
             "parameter 'speed_max' is nan; it has to be a finite number",
         ),
-        (
-            {"port": "x", "command_timeout": 0.0},
-            "'command_timeout' is 0; it has to be a positive number",
+        *(
+            (
+                {"port": "x", "command_timeout": seconds},
+                rf"'command_timeout' is {seconds:g}; it has to be from 0.01 to 3600 seconds",
+            )
+            for seconds in (-1.0, 0.0, 1e-300)
         ),
+        ({"port": "x", "command_timeout": 1e300}, r"is 1e\+300; it has to be from 0.01 to 3600"),
         ({"port": "x", "command_timeout": math.inf}, "'command_timeout' is inf; it has to be"),
     ],
 )

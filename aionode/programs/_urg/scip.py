@@ -76,6 +76,10 @@ class Socket:
                 reader, writer = await asyncio.open_connection(host, port, limit=CHUNK)
         except TimeoutError:
             raise OSError(f"{name} does not answer; check ip_address and the network") from None
+        except ValueError:  # it cannot be encoded as a name, or has a null character
+            raise OSError(
+                f"{host!r} is no address and no name of a host; check ip_address"
+            ) from None
         except OSError as error:
             # asyncio's text is the address; the numbers of getaddrinfo are negative.
             number = error.errno or 0
