@@ -208,6 +208,25 @@ def test_what_has_moved_is_painted_anew(changed: int) -> None:
     assert np.array_equal(canvas.occupancy(), painted(*submaps).occupancy())
 
 
+def test_a_map_with_fewer_submaps_is_not_painted_twice() -> None:
+    """Nothing that Cartographer has deleted, or painted already, is in what the next map needs."""
+    submaps = [submap(uniform(9, 9, 20 + n, 0), pose_at()) for n in range(6)]
+    fewer = Canvas(submaps[:4], RESOLUTION, painted(*submaps).base)
+    list(fewer.strokes())
+    canvas = Canvas(submaps[:3], RESOLUTION, fewer.base)
+    list(canvas.strokes())
+
+    assert np.array_equal(canvas.occupancy(), painted(*submaps[:3]).occupancy())
+
+
+def test_a_stroke_of_a_map_with_larger_cells_paints_fewer_of_them() -> None:
+    """Each is the mean of many cells of the submap, and Ctrl-C waits for a stroke."""
+    coarse = Canvas([submap(uniform(1600, 1600, 1, 0), pose_at())], 16 * RESOLUTION)
+    counts = [np.count_nonzero(coarse.seen) for _ in coarse.strokes()]
+
+    assert max(np.diff([0, *counts])) * 17 * 17 <= 1 << 20
+
+
 PLAIN = uniform(4, 4, 10, 0)
 
 

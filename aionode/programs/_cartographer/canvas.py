@@ -18,10 +18,10 @@ MAX_SIDE: Final = 32_767
 """The longest side of a picture in cairo."""
 
 MAX_CELLS: Final = 1 << 26
-"""The most cells of a map: about 200 MB while it is painted."""
+"""The most cells of a map: about 600 MB while it is painted."""
 
-STROKE: Final = 1 << 18
-"""How many cells are painted at a time."""
+STROKE: Final = 1 << 20
+"""How many cells of a submap are read at a time: each cell of the map needs four or more."""
 
 DOWNSCALED: Final = 4 / 3
 """From how many cells of a submap for each cell of the map their mean is taken, as in cairo."""
@@ -70,7 +70,7 @@ class Canvas:
 
     Attributes:
         origin: The lower left corner of the map, in metres.
-        base: The map without the submaps that will have changed next time; None before.
+        base: The map without the submaps that will have changed next time; None if there is none.
 
     Raises:
         ValueError: The map would be too large.
@@ -105,6 +105,7 @@ class Canvas:
         self.base: Base | None = None
         self.done = 0
         if base is not None and self.begins_with(base, (height, width)):
+            self.base = base
             self.intensity, self.seen = base.intensity.copy(), base.seen.copy()
             self.done = len(base.submaps)
         else:
@@ -121,11 +122,11 @@ class Canvas:
     def strokes(self) -> Iterator[bool]:
         """Paint the submaps, in order; yield True after each part, which takes a moment."""
         for at, (matrix, shift, cells) in enumerate(self.placed):
-            if at == len(self.placed) - ACTIVE:
-                layers = self.intensity.copy(), self.seen.copy()
-                self.base = Base(self.submaps[:at], self.start, *layers)
             if at < self.done:
                 continue
+            if at == len(self.placed) - ACTIVE and at > self.done:
+                layers = self.intensity.copy(), self.seen.copy()
+                self.base = Base(self.submaps[:at], self.start, *layers)
             back = inverse(matrix)
             if back is None:
                 continue
@@ -134,7 +135,7 @@ class Canvas:
             limits = self.seen.shape[::-1]
             left, top = (int(each) for each in np.clip(np.floor(corners.min(axis=0)), 0, limits))
             right, bottom = (int(each) for each in np.clip(np.ceil(corners.max(axis=0)), 0, limits))
-            rows = max(1, STROKE // max(1, right - left))
+            rows = max(1, STROKE // (brush.taps * max(1, right - left)))
             for row in range(top, bottom, rows):
                 area = (slice(row, min(row + rows, bottom)), slice(left, right))
                 self.paint(area, brush)
@@ -188,6 +189,7 @@ class Brush:
         # How many cells of the submap count for one of the map, in each direction.
         steps = np.hypot(back[:, 0], back[:, 1])
         self.reaches = np.where(steps < DOWNSCALED, 1.0, np.minimum(steps, WIDEST))
+        self.taps = int(np.prod(np.ceil(self.reaches) + 1))
         self.margin = int(np.ceil(self.reaches.max()))
         self.limits = np.array(cells.shape[1::-1]) + self.margin
         self.width = cells.shape[1] + 4 * self.margin
