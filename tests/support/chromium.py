@@ -39,7 +39,7 @@ IN_A_BROWSER: Final = [
     pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
     pytest.mark.one_loop,
 ]
-"""The marks of tests with a browser, all of which run in one worker."""
+"""The marks of tests with a browser."""
 
 OPTIONS: Final = (
     "--headless=new",
