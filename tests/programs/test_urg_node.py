@@ -19,7 +19,7 @@ from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.sensor_msgs.msg import LaserScan, MultiEchoLaserScan
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.programs._urg import urg_node_driver
-from aionode.programs._urg.scip import MOST_BYTES, Reply, Scip, Socket, echoes_in
+from aionode.programs._urg.scip import MOST_BYTES, MOST_LINES, Reply, Scip, Socket, echoes_in
 from aionode.programs._urg.urg_node_driver import UrgNode
 from tests.programs.conftest import Start
 from tests.support.waiting import until
@@ -335,10 +335,11 @@ async def test_five_damaged_scans_connect_again(
 ) -> None:
     """One more than `error_limit`."""
     monkeypatch.setattr(urg_node_driver, "RECONNECT_SEC", 0.0)
-    await desk.begin()
+    driver = await desk.begin()
     for _ in range(4):
         desk.lidar.scan((1000,) * 4)
-    assert desk.lidar.connections == 1
+    await until(lambda: driver.error_count == 4)
+    assert driver.is_started
     desk.lidar.scan((1000,) * 4)
     await until(lambda: desk.lidar.connections == 2)
 
@@ -424,23 +425,42 @@ async def test_impossible_parameters_are_refused(
     await until(is_said)
 
 
+class Babbler:
+    """A connection to something that always sends the same.
+
+    Args:
+        data: What it sends.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+
+    async def read(self) -> bytes:
+        """Return it."""
+        return self.data
+
+    def write(self, data: bytes) -> None:
+        """Hear nothing."""
+
+    def close(self) -> None:
+        """Go on."""
+
+
 async def test_a_reply_without_end_is_not_kept() -> None:
     """A server of another protocol may send anything."""
-
-    class Endless:
-        async def read(self) -> bytes:
-            return b"x" * 5000
-
-        def write(self, data: bytes) -> None:
-            pass
-
-        def close(self) -> None:
-            pass
-
-    scip = Scip(Endless())
+    scip = Scip(Babbler(b"x" * 5000))
     with pytest.raises(OSError, match="it does not end; is this a lidar"):
         await scip.receive()
     assert len(scip.buffer) <= MOST_BYTES + 5000
+
+
+async def test_a_reply_of_very_short_lines_is_a_checksum_error() -> None:
+    """To check each of them would take half a second, in which no other node works."""
+    line = b"0\n"  # an empty one, with its checksum
+    reply = await Scip(Babbler(b"MD\n99b\n" + line * 50_000 + b"\n")).receive()
+    assert len(reply.lines) <= MOST_LINES
+    with pytest.raises(OSError, match="checksum error"):
+        reply.check()
 
 
 @given(st.binary(max_size=300), st.booleans())
@@ -513,8 +533,7 @@ async def test_scip_1_is_switched_to_2(desk: Desk) -> None:
 async def test_the_end_of_the_node_stops_the_lidar(desk: Desk) -> None:
     """Its laser would stay on otherwise; scans on their way must not reset the connection."""
     driver = await desk.begin()
-    for _ in range(200):
-        desk.lidar.scan(*[(1000,)] * 1081)
+    desk.lidar.send(scan_reply(desk.lidar.measuring or "", [(1000,)] * 1081) * 200)
     driver.destroy_node()
     await until(lambda: desk.lidar.ended)
     assert (desk.lidar.heard[-1], desk.lidar.ended) == ("QT", "closed")

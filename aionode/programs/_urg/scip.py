@@ -18,6 +18,9 @@ END: Final = b"\n\n"
 MOST_BYTES: Final = 200_000
 """The most bytes of a reply; a scan of 5000 steps with three echoes has fewer."""
 
+MOST_LINES: Final = MOST_BYTES // 65
+"""The most lines of a reply: scans have 64 characters and a checksum in each."""
+
 MOST_STEPS: Final = 5000
 MOST_ECHOES: Final = 3
 CHUNK: Final = 65536
@@ -185,7 +188,7 @@ class Reply(NamedTuple):
         """Return what the lines contain, without their checksums."""
         return b"".join(line[:-1] for line in self.lines)
 
-    def text(self, name: str, pattern: str) -> str:
+    def text(self, name: str, pattern: str = r"[^;\n]*") -> str:
         """Return what follows the name of a value, as far as it has a pattern."""
         found = re.search(rf"^{name}:({pattern})", "\n".join(map(latin, self.lines)), re.MULTILINE)
         return quoted(found[1]) if found else "receive error."
@@ -237,7 +240,8 @@ class Scip:
             if done > MOST_BYTES:
                 raise OSError("invalid response: it does not end; is this a lidar with SCIP 2.0?")
             self.buffer += await self.link.read()
-        lines = bytes(self.buffer[:end]).strip(b"\n").split(b"\n")
+        # What is too long for a reply stays in its last line, whose checksum is wrong then.
+        lines = bytes(self.buffer[:end]).strip(b"\n").split(b"\n", MOST_LINES)
         del self.buffer[: end + len(END)]
         echo, status, *rest = [*lines, b""] if len(lines) < 2 else lines
         return Reply(latin(echo), latin(status[:2]), [line for line in rest if line])

@@ -222,17 +222,17 @@ class UrgNode(Node):
             OSError: It does not answer.
         """
         reply = await scip.command("VV")
-        firmware = reply.text("FIRM", r"[^;]*")
+        firmware = reply.text("FIRM")
         version, _, rest = firmware.partition("(")
         self.about = {
-            "Vendor Name": reply.text("VEND", r"[^;]*"),
-            "Product Name": reply.text("PROD", r"[^;]*"),
+            "Vendor Name": reply.text("VEND"),
+            "Product Name": reply.text("PROD"),
             "Firmware Version": version,
             "Firmware Date": rest.partition(")")[0],
-            "Protocol Version": reply.text("PROT", r"[^;]*"),
-            "Device ID": reply.text("SERI", r"[^;]*"),
+            "Protocol Version": reply.text("PROT"),
+            "Device ID": reply.text("SERI"),
         }
-        self.status = (await scip.command("II")).text("STAT", r"[^;]*")
+        self.status = (await scip.command("II")).text("STAT")
         self.get_logger().info(
             f"Connected to{' multiecho' if self.has_echoes else ''} "
             f"{'network' if self.host else 'serial'} device with"
@@ -319,7 +319,7 @@ class UrgNode(Node):
             OSError: It is damaged.
         """
         if reply.echo == "II":
-            self.status = reply.text("STAT", r"[^;]*")
+            self.status = reply.text("STAT")
             self.told.set()
             return
         if not reply.echo.startswith(("M", "N")) or reply.status != "99" or not reply.lines:
