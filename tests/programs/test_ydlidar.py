@@ -524,6 +524,7 @@ def errors_of(process: subprocess.Popen[str]) -> str:
     return process.stderr.read()
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_ctrl_c_stops_the_lidar(
@@ -539,6 +540,7 @@ async def test_ctrl_c_stops_the_lidar(
     assert process.returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_an_unplugged_lidar_ends_the_program(
@@ -554,6 +556,7 @@ async def test_an_unplugged_lidar_ends_the_program(
     assert process.returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_a_device_that_does_not_answer_ends_the_program(
