@@ -443,6 +443,8 @@ async def test_the_page_asks_for_a_token(context: Context) -> None:
     """)
     async with scene(context, policy, "#token=wrong") as (page, *_):
         await page.until("!document.querySelector('#sign-in').hidden")
+        # The reason comes later, and moves the button.
+        await page.until("document.querySelector('#notice').textContent.includes('refused')")
         await page.value("document.querySelector('#token').value = 'correct horse battery staple'")
         await page.click("#sign-in button")
         await connected(page)
