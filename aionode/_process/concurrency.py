@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import selectors
+import threading
+from concurrent.futures import Executor, Future
 from contextvars import copy_context
 from functools import partial
+from queue import SimpleQueue
 from types import coroutine
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
@@ -15,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SLICE_NS",
+    "DaemonThread",
     "checkpoint",
     "is_cancelled_task",
     "run_in_thread",
@@ -25,6 +29,7 @@ __all__ = [
 
 P = ParamSpec("P")
 T = TypeVar("T")
+Call = tuple[Future[Any], "Callable[[], Any]"]
 
 SLICE_NS = 1_000_000
 """How long a queue is drained before timers, I/O and other callbacks get a turn."""
@@ -72,6 +77,40 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
         calls.discard(ended)
         if not ended.done():
             ended.set_result(None)
+
+
+class DaemonThread(Executor):
+    """One daemon thread, so that a call that hangs keeps neither block nor program from ending.
+
+    It is always the same thread, as some libraries with a device require.
+
+    Args:
+        name: What debuggers show.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._calls: SimpleQueue[Call | None] = SimpleQueue()
+        threading.Thread(target=self._run, name=name, daemon=True).start()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call a function in the thread."""
+        future: Future[Any] = Future()
+        self._calls.put((future, lambda: fn(*args, **kwargs)))
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002
+        """End the thread after the calls already submitted; never wait for it."""
+        self._calls.put(None)
+
+    def _run(self) -> None:
+        while (call := self._calls.get()) is not None:
+            future, work = call
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                future.set_result(work())
+            except BaseException as error:  # noqa: BLE001  # the caller raises it
+                future.set_exception(error)
 
 
 def is_cancelled_task() -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from aionode._process.concurrency import DaemonThread
 from aionode.clock import S_TO_NS, Time
 from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.stats import Distribution
@@ -19,7 +20,7 @@ from aionode.errors import (
     PolicyTooSlowError,
     StaleError,
 )
-from aionode.learn._inference import InferenceThread, infer
+from aionode.learn._inference import infer
 from aionode.learn._plan import ActionPlan
 
 if TYPE_CHECKING:
@@ -342,7 +343,7 @@ class Actor:
         )
         async with AsyncExitStack() as stack:
             if executor is None:
-                executor = stack.enter_context(InferenceThread())
+                executor = stack.enter_context(DaemonThread("aionode-policy"))
             observations = await stack.enter_async_context(self._observe())
             while True:
                 try:

@@ -4,50 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import inspect
-import threading
-from concurrent.futures import Executor, Future
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from aionode._process.concurrency import thread_calls
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from concurrent.futures import Executor
 
-__all__ = ["InferenceThread", "infer"]
-
-Call = tuple[Future[Any], "Callable[[], Any]"]
-
-
-class InferenceThread(Executor):
-    """One daemon thread, so that a policy that hangs keeps neither block nor program from ending.
-
-    It is always the same thread, as some libraries with a device require.
-    """
-
-    def __init__(self) -> None:
-        self._calls: SimpleQueue[Call | None] = SimpleQueue()
-        threading.Thread(target=self._run, name="aionode-policy", daemon=True).start()
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call a function in the thread."""
-        future: Future[Any] = Future()
-        self._calls.put((future, lambda: fn(*args, **kwargs)))
-        return future
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002
-        """End the thread after the calls already submitted; never wait for it."""
-        self._calls.put(None)
-
-    def _run(self) -> None:
-        while (call := self._calls.get()) is not None:
-            future, work = call
-            if not future.set_running_or_notify_cancel():
-                continue
-            try:
-                future.set_result(work())
-            except BaseException as error:  # noqa: BLE001  # the caller raises it
-                future.set_exception(error)
+__all__ = ["infer"]
 
 
 async def infer(policy: Callable[..., Any], executor: Executor, *args: Any) -> Any:

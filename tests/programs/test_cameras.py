@@ -419,6 +419,20 @@ async def test_a_camera_may_come_later_if_its_check_is_skipped(
     assert await viewer.pictures(1)
 
 
+async def test_a_silent_camera_does_not_keep_the_process(start: Start, tmp_path: Path) -> None:
+    """Its driver answers only once it is unplugged, and Ctrl-C should not need that."""
+    pipe = tmp_path / "a.mkv"
+    os.mkfifo(pipe)
+    node = start(UsbCam, video_device=str(pipe), pixel_format="rgb8", **SMALL)
+    writer = await asyncio.to_thread(os.open, pipe, os.O_WRONLY)
+    try:
+        node.destroy_node()
+        async with asyncio.timeout(5):
+            await asyncio.get_running_loop().shutdown_default_executor()
+    finally:
+        os.close(writer)
+
+
 async def test_a_control_is_set_again_when_its_parameter_is(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -433,7 +447,8 @@ async def test_a_control_is_set_again_when_its_parameter_is(
 
     assert node.set_parameters([Parameter("brightness", value=99)])[0].successful
 
-    await until(lambda: "--device=/dev/null -c brightness=99" in log.read_text())
+    await until(lambda: log.read_text().count("focus_auto=0") == 2)
+    assert "--device=/dev/null -c brightness=99" in log.read_text()
 
 
 async def test_controls_of_the_camera_are_those_of_usb_cam(

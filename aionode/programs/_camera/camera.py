@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import ExitStack
 from typing import Any, Final
 
 from aionode import Node, QoSProfile
+from aionode._process.concurrency import DaemonThread
 from aionode.errors import CommandError
 from aionode.image import from_numpy
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
@@ -92,13 +94,19 @@ class Camera(Node):
         Raises:
             OSError: It cannot be opened, or no longer be read.
         """
-        video = await asyncio.to_thread(Video, self.device, self.format, self.size, self.rate)
         clock = wall_clock(self)
+        loop = asyncio.get_running_loop()
         count = 0
-        try:
+        with ExitStack() as stack:
+            # A camera that is silent holds its thread until it is unplugged.
+            thread = stack.enter_context(DaemonThread("aionode-camera"))
+            video = await loop.run_in_executor(
+                thread, Video, self.device, self.format, self.size, self.rate
+            )
+            stack.callback(video.close)
             while True:
                 began = clock.now()
-                frame = await asyncio.to_thread(video.read)
+                frame = await loop.run_in_executor(thread, video.read)
                 if frame is None and count and not video.is_camera:
                     return
                 if frame is None:
@@ -109,8 +117,6 @@ class Camera(Node):
                 if not video.is_camera:
                     taken = (clock.now() - began).nanoseconds / 1e9
                     await clock.sleep(1.0 / self.rate - taken)
-        finally:
-            video.close()
 
     async def publish(self, frame: Frame) -> None:
         """Publish a picture, and the calibration."""

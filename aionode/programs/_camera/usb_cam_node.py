@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import aionode
 from aionode import Parameter, QoSProfile
+from aionode._process.concurrency import DaemonThread
 from aionode.errors import CommandError
 from aionode.interfaces.std_srvs.srv import SetBool
 from aionode.programs._camera.calibration import Calibration
@@ -77,7 +78,7 @@ class UsbCam(Camera):
 
     async def capture(self) -> None:
         """Set the controls of the camera, and publish its pictures until the node ends."""
-        await asyncio.to_thread(self.control)
+        await self.set_controls()
         await super().capture()
 
     def on_parameters(self, parameters: list[Parameter]) -> None:
@@ -88,7 +89,12 @@ class UsbCam(Camera):
     async def control_again(self) -> None:
         """Set the controls of the camera, once."""
         self.controlling.cancel()
-        await asyncio.to_thread(self.control)
+        await self.set_controls()
+
+    async def set_controls(self) -> None:
+        """Set the controls of the camera, for which its driver may take long."""
+        with DaemonThread("aionode-camera") as thread:
+            await asyncio.get_running_loop().run_in_executor(thread, self.control)
 
     def on_set_capture(self, request: Any, response: Any) -> Any:
         """Start or stop taking pictures."""
