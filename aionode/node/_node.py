@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
 from aionode import names, qos
 from aionode.clock import Clock
-from aionode.endpoints.core.end_record import NodeEnd, failure_text
+from aionode.endpoints.core.end_record import NodeEnd, failure_line
 from aionode.endpoints.core.endpoint import EndpointSetup
 from aionode.endpoints.core.future import asks
 from aionode.endpoints.core.node_core import NodeCore, core_of, in_loop_thread, is_named
@@ -983,7 +983,7 @@ def tell_failure(core: NodeCore, error: Exception) -> None:
     coroutine = None if task is None else task.get_coro()
     if getattr(coroutine, "cr_code", None) is Node.run.__code__:
         core.logger.error(
-            f"the node failed and has ended: {failure_text(error)}. "
+            f"the node failed and has ended: {failure_line(error)}. "
             "To get the exception, await the task of run()"
         )
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import yaml
 from msgspec.structs import replace
 
-from aionode._process.tracebacks import traceback_text
 from aionode.arguments import Usage, parse_arguments
-from aionode.endpoints.core.end_record import failure_text
+from aionode.endpoints.core.end_record import failure_line
 from aionode.engine.context import Context
 from aionode.node import Node
+from aionode.runner import failure_text
 from aionode.system._member import Member
 from aionode.system._status import MemberEnd
 
@@ -70,10 +70,10 @@ class NodeMember(Member):
                 finally:
                     stopper.cancel()
         except Exception as error:  # noqa: BLE001  # shown in the log and the status
-            self.host.log.write(self.name, traceback_text(error).encode())
+            self.host.log.write(self.name, failure_text(error).encode())
             self.host.log.flush()
             return MemberEnd(
-                self.name, failed=True, text=f"failed: {failure_text(error)}", status=1
+                self.name, failed=True, text=f"failed: {failure_line(error)}", status=1
             )
         return MemberEnd(self.name, failed=False, text="ended", status=0)
 

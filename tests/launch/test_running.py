@@ -218,6 +218,19 @@ async def test_plugins_that_aionode_has_run_as_tasks(robot: Robot) -> None:
     assert "/wheels" in topics
 
 
+async def test_a_component_that_cannot_start_says_so_without_a_traceback(robot: Robot) -> None:
+    """As the program does; the traceback would be of aionode's own lines."""
+    lines = await robot.run(
+        """
+        ComposableNodeContainer(name='c', namespace='', composable_node_descriptions=[
+            ComposableNode(package='vesc_driver', plugin='vesc_driver::VescDriver')]),
+        """
+    )
+
+    assert "error: parameter 'port' is missing; it names a device: /dev/ttyACM0" in lines
+    assert not any("Traceback" in line for line in lines)
+
+
 async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> None:
     """With `autostart`, once it answers."""
     plan = robot.plan(

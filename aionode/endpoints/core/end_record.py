@@ -11,7 +11,7 @@ from msgspec import Struct
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["EndRecord", "NodeEnd", "failure_text", "short_text"]
+__all__ = ["EndRecord", "NodeEnd", "failure_line", "short_text"]
 
 
 class NodeEnd(Struct, frozen=True):
@@ -40,10 +40,10 @@ def short_text(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
-def failure_text(error: BaseException) -> str:
+def failure_line(error: BaseException) -> str:
     """Format an exception like `short_text`, with the callback of each exception."""
     if isinstance(error, BaseExceptionGroup):
-        return "; ".join(failure_text(part) for part in error.exceptions)
+        return "; ".join(failure_line(part) for part in error.exceptions)
     return ", ".join([short_text(error), *getattr(error, "__notes__", ())])
 
 
