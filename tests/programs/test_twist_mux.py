@@ -12,6 +12,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from aionode.interfaces.std_msgs.msg import Bool
+from aionode.programs._command_mux.mux import Source
 from aionode.programs._command_mux.twist_mux import TwistMux
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
@@ -117,6 +118,37 @@ async def test_a_lock_that_falls_silent_locks(
     assert await people.drive("joy", 0.2) == []
 
 
+async def test_a_lock_that_was_never_heard_locks_as_simulated_time_begins(
+    start: Start, node_factory: Callable[..., Any]
+) -> None:
+    """A message that has not come is not one of the time 0."""
+    start(TwistMux, **PARAMETERS, use_stamped=False, use_sim_time=True)
+    people = Robot(node_factory("people"))
+    await settle()
+
+    assert await people.drive("joy", 0.2) == []
+
+
+def test_a_clock_that_is_set_back_ends_what_was_heard() -> None:
+    """Who freed a lock, or commanded, may be dead since."""
+    times = [5 * 10**9]
+    source = Source("locks.alive", "alive", 2.0, 255, lambda: times[-1])
+    source.hear(is_set=False)
+    assert not source.has_expired
+    times.append(10**9)
+
+    assert source.has_expired
+
+
+async def test_a_program_without_sources_says_what_is_missing(
+    start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As when the name of the node is not that in the parameter file."""
+    start(TwistMux)
+
+    assert "no command passes, because there are no sources" in capsys.readouterr().err
+
+
 async def test_commands_are_stamped_by_default(robot: Callable[..., Any]) -> None:
     """As since version 4.4, which Jazzy and Kilted have."""
     people = await robot(TwistStamped)
@@ -159,6 +191,7 @@ async def test_diagnostics_say_who_is_heard(
             "priority' is 1.5; its type has to be int",
         ),
         ("topics.joystick.timeout", math.nan, "timeout' is nan; it has to be a finite number"),
+        ("use_stamped", 1, "'use_stamped' is 1; its type has to be bool"),
     ],
 )
 async def test_parameters_that_do_not_fit_are_named(

@@ -36,7 +36,7 @@ class Source:
         self.timeout = timeout
         self.priority = max(0, min(255, priority))
         self.is_set = False
-        self.stamp_ns = 0
+        self.stamp_ns = -math.inf
         self._now = now
 
     def hear(self, *, is_set: bool) -> None:
@@ -46,8 +46,11 @@ class Source:
 
     @property
     def has_expired(self) -> bool:
-        """Whether the last message is too old, or there was none."""
-        return self.timeout > 0 and (self._now() - self.stamp_ns) / 1e9 > self.timeout
+        """Whether the last message is too old, or there was none.
+
+        One from the future, of before the clock was set back, could stay valid for hours.
+        """
+        return self.timeout > 0 and not 0 <= (self._now() - self.stamp_ns) / 1e9 <= self.timeout
 
     @property
     def is_locked(self) -> bool:
@@ -93,6 +96,12 @@ class CommandMux(Node):
         for source in self.locks:
             self.create_subscription(Bool, source.topic, self.locking(source), 10)
         create_wall_timer(self, DIAGNOSTICS_SEC, self.tell)
+        if not self.commands:
+            self.get_logger().warning(
+                "no command passes, because there are no sources; set the parameters "
+                "topics.NAME.topic, topics.NAME.timeout and topics.NAME.priority of the node "
+                f"{self.get_fully_qualified_name()}"
+            )
 
     def sources(self, prefix: str) -> list[Source]:
         """Return the sources below a prefix of parameters, and log them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import aionode
+from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.programs._command_mux.mux import CommandMux
@@ -25,7 +26,12 @@ class TwistMux(CommandMux):
             # Humble's twist_mux, 4.3, only knows Twist; since 4.4 TwistStamped is the default.
             is_stamped = self.context.ros_distro != "humble"
             self.declare_parameter("use_stamped", is_stamped, ParameterDescriptor())
-        kind: Any = TwistStamped if self.get_parameter("use_stamped").value else Twist
+        is_stamped = self.get_parameter("use_stamped").value
+        if type(is_stamped) is not bool:
+            raise CommandError(
+                f"parameter 'use_stamped' is {is_stamped!r}; its type has to be bool"
+            )
+        kind: Any = TwistStamped if is_stamped else Twist
         self.connect(kind, "cmd_vel_out")
 
 
