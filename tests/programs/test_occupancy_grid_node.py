@@ -391,6 +391,26 @@ async def test_the_map_has_the_frame_and_the_time_of_the_list(
     assert cartographer.asked == [0]
 
 
+async def test_a_late_subscription_gets_the_last_map_only(
+    start: Start, cartographer: Cartographer, node_factory: Callable[..., Any]
+) -> None:
+    """Earlier ones would be tens of megabytes that it draws for a moment."""
+    cartographer.submaps = {0: texture(PLAIN), 1: texture(PLAIN)}
+    start(OccupancyGridNode, FAST)
+    cartographer.list(a0=pose_at())
+    await cartographer.next_map(1)
+    cartographer.list(a0=pose_at(), a1=pose_at())
+    await cartographer.next_map(2)
+    late: list[int] = []
+    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node_factory("late").create_subscription(
+        OccupancyGrid, "map", lambda msg: late.append(msg.header.stamp.sec), latched
+    )
+    await until(lambda: bool(late))
+
+    assert late[0] == 2
+
+
 async def test_a_submap_is_fetched_again_when_its_version_has_changed(
     start: Start, cartographer: Cartographer
 ) -> None:

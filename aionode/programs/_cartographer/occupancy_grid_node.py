@@ -145,7 +145,8 @@ class OccupancyGridNode(Node):
         if ignored:
             self.get_logger().warning(f"these arguments have no effect: {', '.join(ignored)}")
         self.client = self.create_client(SubmapQuery, "submap_query")
-        latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        # The original keeps ten maps for late subscriptions, which only need the last one.
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.publisher = self.create_publisher(OccupancyGrid, "map", latched)
         # Only the latest list counts, and the original asks for the submaps of older ones first.
         self.create_subscription(SubmapList, "submap_list", self.on_submap_list, 1)
