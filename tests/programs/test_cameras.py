@@ -364,11 +364,25 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "text", ["image_width: .inf", "[" * 5000, f"image_width: {'1:' * 20_000}1"]
+)
+def test_a_calibration_beyond_all_limits_is_the_same_error(text: str) -> None:
+    """A camera should not end because of its calibration."""
+    matrices = ("camera_matrix", "rectification_matrix", "projection_matrix")
+    rest = "".join(f"\n{name}: {{data: [1]}}" for name in (*matrices, "distortion_coefficients"))
+    with pytest.raises(ValueError, match="not a calibration"):
+        info_of(text + rest)
+
+
+@pytest.mark.parametrize(
     ("kind", "parameters", "text"),
     [
         (UsbCam, {"video_device": "/dev/video77"}, "video_device '/dev/video77' does not exist"),
         (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; use yuyv, yuyv2rgb"),
-        (UsbCam, {"framerate": 0.0}, "use numbers above 0"),
+        (UsbCam, {"image_width": 0}, "use numbers above 0"),
+        (UsbCam, {"framerate": 0.0}, "should take 0 pictures per second; use 1e-06 to 1e.06"),
+        (UsbCam, {"framerate": 1e-300}, "1e-300 pictures per second"),
+        (V4L2Camera, {"time_per_frame": [1, 10**9]}, "1e.09 pictures per second"),
         (V4L2Camera, {"image_size": [640]}, "Invalid image size"),
         (V4L2Camera, {"output_encoding": "mono"}, "output_encoding 'mono'"),
         (CameraNode, {"camera": "none.mkv"}, "camera 'none.mkv' does not exist; cameras here"),
@@ -403,6 +417,17 @@ async def test_a_file_that_is_no_video_is_said_and_tried_again(
     file.write_bytes((videos / "plain.mkv").read_bytes())
 
     assert await viewer.pictures(1)
+
+
+@pytest.mark.parametrize("pixels", ["yuyv", "uyvy"])
+async def test_odd_sizes_of_formats_with_pairs_of_pixels_are_said(
+    start: Start, videos: Path, capsys: pytest.CaptureFixture[str], pixels: str
+) -> None:
+    """FFmpeg has none of them; a camera may have other sizes once it is plugged in again."""
+    sizes = {"image_width": 63, "image_height": 47}
+    start(UsbCam, video_device=str(videos / "plain.mkv"), pixel_format=pixels, **sizes)
+
+    await until(lambda: "pictures of 63 x 47 pixels cannot be yuv422" in capsys.readouterr().err)
 
 
 async def test_a_camera_may_come_later_if_its_check_is_skipped(

@@ -12,6 +12,7 @@ import yaml
 from aionode import Node
 from aionode._packages import here
 from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.errors import PackageNotFoundError
 from aionode.interfaces.sensor_msgs.msg import CameraInfo
 from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
@@ -33,7 +34,7 @@ def info_of(text: str) -> CameraInfo:
         ValueError: The text is not a calibration.
     """
     try:
-        given = yaml.safe_load(text)
+        given = loaded_yaml(text)
         matrices = {
             name: [float(number) for number in given[key]["data"]]
             for name, (key, _) in MATRICES.items()
@@ -47,7 +48,14 @@ def info_of(text: str) -> CameraInfo:
         )
         for name, numbers in matrices.items():
             setattr(info, name, numbers)
-    except (yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError) as error:
+    except (
+        yaml.YAMLError,
+        LookupError,
+        ArithmeticError,
+        TypeError,
+        AttributeError,
+        ValueError,
+    ) as error:
         raise ValueError(f"not a calibration: {type(error).__name__}: {error}") from None
     sizes = [len(info.k), len(info.r), len(info.p)]
     if sizes != [9, 9, 12]:

@@ -23,6 +23,9 @@ START_SEC: Final = 0.01
 MAX_SIDE: Final = 16_384
 """The most pixels in each direction: more than any camera has, in less than a gigabyte."""
 
+RATES: Final = (1e-6, 1e6)
+"""The least and the most pictures per second."""
+
 RETRY_SEC: Final = 1.0
 """Delay after a failure before a camera is opened again."""
 
@@ -62,11 +65,18 @@ class Camera(Node):
         """Start publishing, as soon as the camera is there if it `may_come_later`.
 
         Raises:
-            CommandError: There is no camera, no package to read it, or no room for its pictures.
+            CommandError: There is no camera, no package to read it, no room for its pictures, or no
+                time for them.
         """
         if max(self.size) > MAX_SIDE:
             raise CommandError(
                 f"the camera should have {self.size} pixels; use at most {MAX_SIDE} for each"
+            )
+        slowest, fastest = RATES
+        if not slowest <= self.rate <= fastest:
+            raise CommandError(
+                f"the camera should take {self.rate:g} pictures per second; use {slowest:g} to "
+                f"{fastest:g}"
             )
         check_device(self.device, may_come_later=may_come_later)
         self.calibration = calibration

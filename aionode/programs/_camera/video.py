@@ -144,7 +144,7 @@ class Video:
         """Return the next picture; None at the end of a file.
 
         Raises:
-            OSError: The camera is gone, or the file is damaged.
+            OSError: The camera is gone, the file is damaged, or its pictures have no such format.
         """
         try:
             with self.reading:
@@ -170,6 +170,11 @@ class Video:
         width, height = self.size if any(self.size) else own
         if (width, height) != own:
             data = None
+        if self.format.av == "yuyv422" and (width % 2 or height % 2):
+            raise OSError(
+                f"pictures of {width} x {height} pixels cannot be {self.format.encoding}, which "
+                "needs even numbers; choose another size or format"
+            )
         found = picture.reformat(width=width, height=height, format=self.format.av)
         pixels = found.to_ndarray()
         if self.format.encoding == "yuv422":
