@@ -30,8 +30,9 @@ help:
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
 
+# `make check` runs the tests of the documentation and of the structure.
 test: .venv/installed-dev
-	$(BIN)/python -m pytest -q -n $(WORKERS)
+	$(BIN)/python -m pytest -q -n $(WORKERS) --ignore=tests/test_docs.py --ignore=tests/test_structure.py
 
 # Targets of their own, the longest first, so that `make -j 2 check` uses two processors.
 check: check-types check-pages check-docs check-tools check-style check-layers

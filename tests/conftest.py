@@ -59,6 +59,10 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 share_bytecode()
 
+# A thread of OpenBLAS, in each process that imports NumPy, first spins for as long as a short test.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+assert "numpy" not in sys.modules, "it would have its threads already"
+
 
 PROCESSES = (
     "tests/end_to_end/",

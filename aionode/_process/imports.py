@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,6 +21,13 @@ def program_has_frozen() -> bool:
     return gc.get_freeze_count() >= FROZEN_BY_PYTHON
 
 
+class Seen:
+    """What imports have seen once, and do not look for again."""
+
+    frozen: ClassVar[bool] = False
+    """Whether the program has frozen objects; Python counts them one by one, 5 ms in a node."""
+
+
 @contextmanager
 def uncollected() -> Iterator[None]:
     """Pause automatic garbage collection, unless the program has switched it off itself.
@@ -28,7 +35,7 @@ def uncollected() -> Iterator[None]:
     Nearly everything that an import creates is kept, but Python searches it for garbage repeatedly,
     which takes a tenth of the time until a node runs. So every object that exists at the end is
     moved to the oldest generation, as if collections had found it alive, unless the program has
-    frozen objects.
+    frozen objects; what it imports after that stays young.
     """
     collects = gc.isenabled()
     gc.disable()
@@ -37,8 +44,9 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if collects:
-            # Python counts frozen objects one by one: only if there are new objects to move.
-            if len(sys.modules) > imported and not program_has_frozen():
-                gc.freeze()
-                gc.unfreeze()  # to the oldest generation
+            if len(sys.modules) > imported and not Seen.frozen:
+                Seen.frozen = program_has_frozen()
+                if not Seen.frozen:
+                    gc.freeze()
+                    gc.unfreeze()  # to the oldest generation
             gc.enable()

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from types import ModuleType
+from unittest.mock import Mock
 
 import pytest
 
@@ -38,6 +39,7 @@ def test_no_garbage_is_collected_within_the_block_but_after_it() -> None:
 def test_what_an_import_creates_is_old_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Otherwise the next collection would search all of it, for next to no garbage."""
     monkeypatch.setattr("aionode._process.imports.FROZEN_BY_PYTHON", 1)
+    monkeypatch.setattr("aionode._process.imports.Seen.frozen", False)
     gc.unfreeze()  # what tests/conftest.py has frozen
     try:
         with uncollected():
@@ -50,6 +52,7 @@ def test_what_an_import_creates_is_old_at_once(monkeypatch: pytest.MonkeyPatch) 
 
 def test_what_the_program_has_frozen_stays_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
     """As with `freeze_objects`."""
+    monkeypatch.setattr("aionode._process.imports.Seen.frozen", False)
     gc.freeze()
     count = gc.get_freeze_count()
     with uncollected():
@@ -64,6 +67,18 @@ def test_without_an_import_frozen_objects_are_not_counted(
     monkeypatch.setattr(gc, "get_freeze_count", lambda: pytest.fail("counted"))
     with uncollected():
         pass
+
+
+def test_frozen_objects_are_counted_only_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Otherwise each first use of a type would hold up the loop of a running node."""
+    monkeypatch.setattr("aionode._process.imports.Seen.frozen", False)
+    counting = Mock(side_effect=gc.get_freeze_count)
+    monkeypatch.setattr(gc, "get_freeze_count", counting)
+    for name in ("aionode_imported", "aionode_imported_too"):
+        with uncollected():
+            monkeypatch.setitem(sys.modules, name, ModuleType(name))
+
+    assert counting.call_count == 1
 
 
 def test_the_collector_is_on_again_after_an_import_that_fails() -> None:

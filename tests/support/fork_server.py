@@ -40,16 +40,25 @@ PR_SET_CHILD_SUBREAPER: Final = 36
 
 PRELOADED: Final = (
     "asyncio",
+    "concurrent.futures.thread",
+    "encodings.ascii",
+    "resource",
+    "termios",
     "aionode",
     "aionode.action",
     "aionode.rclpy",
+    "aionode.runner",
     "aionode.node",
+    "aionode.interfaces.action_msgs.msg",
+    "aionode.interfaces.action_msgs.srv",
     "aionode.interfaces.action_tutorials_interfaces.action",
     "aionode.interfaces.example_interfaces.action",
     "aionode.interfaces.example_interfaces.srv",
     "aionode.interfaces.geometry_msgs.msg",
     "aionode.interfaces.std_msgs.msg",
     "aionode.interfaces.std_srvs.srv",
+    "numpy",
+    "uvloop",
     "zenoh",
 )
 """What most programs of the tests import, beside `PRELOADED_PACKAGES`."""
