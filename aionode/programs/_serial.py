@@ -62,7 +62,7 @@ class SerialPort:
         try:
             device.baudrate = baudrate
             device.open()
-        except (OSError, OverflowError, ValueError) as error:
+        except Exception as error:  # noqa: BLE001  # also termios.error, which is no OSError
             raise OSError(problem(path, baudrate, error)) from None
         return cls(device)
 
@@ -154,7 +154,7 @@ def set_done(future: asyncio.Future[None]) -> None:
 
 def problem(path: str, baudrate: int, error: Exception) -> str:
     """Return why a port cannot be opened, and what to do."""
-    code = getattr(error, "errno", None)
+    code = next((each for each in error.args[:1] if isinstance(each, int)), None)
     if code == errno.ENOENT:
         from serial.tools.list_ports import comports
 
@@ -164,7 +164,7 @@ def problem(path: str, baudrate: int, error: Exception) -> str:
         return f"{path} may not be opened; add your user to its group, often dialout"
     if code == errno.EAGAIN:
         return f"{path} is in use by another program; stop that first"
-    if not isinstance(error, OSError):
+    if isinstance(error, OverflowError | ValueError):
         return f"{path} cannot be set to {baudrate} baud; use a rate that its driver knows"
     if code is None:
         return f"{path} is not a serial port; use a device such as /dev/ttyUSB0"

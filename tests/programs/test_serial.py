@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import os
 import sys
 import termios
@@ -180,6 +181,19 @@ async def test_a_file_is_no_serial_port(tmp_path: Path) -> None:
     file.touch()
     with pytest.raises(OSError, match=f"{file} is not a serial port; use a device such as"):
         await SerialPort.open(str(file), 115200)
+
+
+async def test_a_port_that_vanishes_while_it_is_opened_is_named(
+    cable: Cable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The error of termios is no OSError, and would end programs that connect again."""
+
+    def gone(*_: object) -> None:
+        raise termios.error(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(termios, "tcsetattr", gone)
+    with pytest.raises(OSError, match=f"{cable.path} cannot be opened: Input/output error"):
+        await SerialPort.open(cable.path, 115200)
 
 
 @pytest.mark.parametrize("rate", [-1, 2**40])

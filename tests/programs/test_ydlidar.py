@@ -465,6 +465,7 @@ async def test_a_lidar_that_is_silent_is_connected_again(
 ) -> None:
     """With one warning, by `auto_reconnect`."""
     monkeypatch.setattr(ydlidar_ros2_driver_node, "SILENCE_SEC", 0.2)
+    monkeypatch.setattr(ydlidar_ros2_driver_node, "RETRY_SEC", 0.01)
     await desk.begin()
     desk.device.turn(1000, times=2)
     await desk.scan()
