@@ -71,8 +71,9 @@ class Viewer:
 
 @pytest.fixture
 async def viewer(node_factory: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> Viewer:
-    """Return a viewer; no calibration is at home."""
+    """Return a viewer; no calibration is at home, and cameras are tried again soon."""
     monkeypatch.setenv("ROS_HOME", "/nowhere")
+    monkeypatch.setattr("aionode.programs._camera.camera.RETRY_SEC", 0.05)
     return Viewer(node_factory("viewer"))
 
 

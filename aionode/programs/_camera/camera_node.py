@@ -13,7 +13,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.programs._camera.calibration import Calibration
 from aionode.programs._camera.camera import Camera
-from aionode.programs._camera.video import FORMATS, SYSTEM, Format, name_of
+from aionode.programs._camera.video import FORMATS, SYSTEM, Format, name_of, text_in
 
 __all__ = ["CameraNode", "Device", "chosen", "devices", "main"]
 
@@ -76,11 +76,6 @@ def devices() -> list[Device]:
     return found
 
 
-def text_in(file: Path) -> str:
-    """Return the text of a file; empty if there is none."""
-    return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
-
-
 def chosen(camera: object, cameras: list[Device]) -> str:
     """Return the device of a camera that is given by index or name, or the path of a video.
 
@@ -135,10 +130,13 @@ class CameraNode(Camera):
             descriptor = ParameterDescriptor(integer_range=[percent])
             self.jpeg_quality = self.declare_parameter("jpeg_quality", 95, descriptor).value
             self.add_post_set_parameters_callback(self.on_parameters)
-        unused = {"role": role, "sensor_mode": mode, "orientation": orientation}
-        for name, usual in (("role", ROLES[0]), ("sensor_mode", ""), ("orientation", 0)):
-            if unused[name] != usual:
-                self.warn_of(name, unused[name])
+        for name, value, usual in (
+            ("role", role, ROLES[0]),
+            ("sensor_mode", mode, ""),
+            ("orientation", orientation, 0),
+        ):
+            if value != usual:
+                self.warn_of(name, value)
         for name in CONTROLS:
             value = self.fixed(name, None, dynamic_typing=True)
             if value is not None:

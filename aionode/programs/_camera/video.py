@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from aionode.errors import CommandError
 
-__all__ = ["FORMATS", "Format", "Frame", "Video", "check_device", "name_of"]
+__all__ = ["FORMATS", "Format", "Frame", "Video", "check_device", "name_of", "text_in"]
 
 
 SYSTEM: Final = Path("/sys/class/video4linux")
@@ -96,8 +96,12 @@ def check_device(path: str, *, may_come_later: bool = False) -> None:
 
 def name_of(path: str) -> str:
     """Return the name of a camera, as reported by its driver, or of a file."""
-    file = SYSTEM / Path(path).resolve().name / "name"
-    return file.read_text(encoding="utf-8").strip() if file.is_file() else Path(path).stem
+    return text_in(SYSTEM / Path(path).resolve().name / "name") or Path(path).stem
+
+
+def text_in(file: Path) -> str:
+    """Return the text of a file; empty if there is none."""
+    return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
 
 
 class Video:

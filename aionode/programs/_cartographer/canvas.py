@@ -18,7 +18,7 @@ MAX_SIDE: Final = 32_767
 """The longest side of a picture in cairo."""
 
 MAX_CELLS: Final = 1 << 26
-"""The most cells of a map: about 600 MB while it is painted."""
+"""The most cells of a map: up to 600 MB while it is painted."""
 
 STROKE: Final = 1 << 20
 """How many cells of a submap are read at a time: each cell of the map needs four or more."""
