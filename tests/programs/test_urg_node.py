@@ -622,7 +622,10 @@ async def test_a_serial_port_has_the_same_protocol(start: Start) -> None:
         ({"error_limit": -1}, "error_limit is -1; use a number from 0"),
         ({"angle_min": math.nan}, "angle_min is nan; use a number from"),
         ({"ip_port": 70000}, "ip_port is 70000; use a number from 1 to 65535"),
-        ({"diagnostics_window_time": 0.0}, "diagnostics_window_time 0.0; use a number"),
+        (
+            {"diagnostics_window_time": 0.0},
+            "window_time 0.0; use at least 0 and at least 1 s",
+        ),
     ],
 )
 async def test_what_does_not_fit_is_refused(

@@ -447,14 +447,20 @@ async def test_the_motor_turns_by_dtr_while_it_scans(
     desk: Desk, monkeypatch: pytest.MonkeyPatch, runs_with_dtr: bool
 ) -> None:
     """With it or without it; a pseudo-terminal has no such line."""
+    ports: list[SerialPort] = []
     set_to: list[bool] = []
-    monkeypatch.setattr(SerialPort, "set_dtr", lambda _, *, is_on: set_to.append(is_on))
-    driver = await desk.begin(support_motor_dtr=runs_with_dtr)
+
+    def set_dtr(port: SerialPort, *, is_on: bool) -> None:
+        ports.append(port)
+        set_to.append(is_on)
+
+    monkeypatch.setattr(SerialPort, "set_dtr", set_dtr)
+    await desk.begin(support_motor_dtr=runs_with_dtr)
     await until(lambda: runs_with_dtr in set_to)
     assert set_to[-1] == runs_with_dtr
-    assert driver.lidar.port.device.dtr != runs_with_dtr  # as the port was opened
+    assert ports[-1].device.dtr != runs_with_dtr  # as the port was opened
     await desk.call("stop_scan")
-    assert set_to[-1] != runs_with_dtr
+    await until(lambda: set_to[-1] != runs_with_dtr)
 
 
 # Failures

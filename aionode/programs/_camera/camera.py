@@ -15,6 +15,7 @@ from aionode.interfaces.std_msgs.msg import Header
 from aionode.programs._camera.calibration import Calibration
 from aionode.programs._camera.republish import compressed
 from aionode.programs._camera.video import FORMATS, Frame, Video, check_device
+from aionode.programs._stamps import stamp_of
 from aionode.programs._wall_timer import create_wall_timer, wall_clock
 
 __all__ = ["Camera"]
@@ -131,8 +132,7 @@ class Camera(Node):
     async def publish(self, frame: Frame) -> None:
         """Publish a picture, and the calibration."""
         now = self.get_clock().now().nanoseconds + self.offset_ns
-        header = Header(frame_id=self.frame_id)
-        header.stamp.sec, header.stamp.nanosec = divmod(now, 1_000_000_000)
+        header = Header(stamp=stamp_of(now), frame_id=self.frame_id)
         image = from_numpy(frame.pixels, frame.encoding, header)
         if self.images is not None:
             self.images.publish(image)

@@ -12,12 +12,12 @@ import aionode
 from aionode import Node, Parameter
 from aionode.diagnostics import FrequencyStatusParam, HeaderlessTopicDiagnostic, Updater
 from aionode.errors import CommandError
-from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.programs._serial import SerialPort
+from aionode.programs._stamps import stamp_of
 from aionode.programs._urg.scans import Echoes, Window
 from aionode.programs._urg.scip import (
     ANSWER_SEC,
@@ -120,8 +120,8 @@ class UrgNode(Node):
             raise CommandError(f"ip_port is {self.port}; use a number from 1 to 65535")
         if not (0.0 <= tolerance < math.inf and 1.0 <= window <= MOST):
             raise CommandError(
-                f"diagnostics_tolerance is {tolerance} and diagnostics_window_time {window}; use a "
-                "number from 0 and a number from 1"
+                f"diagnostics_tolerance is {tolerance} and diagnostics_window_time {window}; use "
+                "at least 0 and at least 1 s"
             )
 
     def check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
@@ -331,8 +331,7 @@ class UrgNode(Node):
         data = reply._replace(lines=reply.lines[1:]).data()
         values = echoes_in(data, window.size, has_intensities=self.has_intensities)
         delay_sec = self.latency_sec + window.latency_sec + window.turn_sec
-        sec, nanosec = divmod(now + round(delay_sec * 1e9), 1_000_000_000)
-        stamp = Time(sec=sec, nanosec=nanosec)
+        stamp = stamp_of(now + round(delay_sec * 1e9))
         if self.echoes is not None:
             self.echoes.publish(window, stamp, values)
         elif self.scans is not None:

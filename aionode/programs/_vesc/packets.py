@@ -122,9 +122,10 @@ class Frames:
 
 
 def frame_at(data: bytes, at: int) -> tuple[int, bytes | None]:
-    """Return the bytes that are used from a place on, and the payload if they are a frame.
+    """Return how many bytes are used from a position on, and the payload if they are a frame.
 
-    They are 0 while more are needed. After what is no frame, the search goes on with the next byte.
+    None are used while more are needed. After what is no frame, the search goes on with the next
+    byte.
     """
     if data[at] != BEGIN or data[at + 1 : at + 2] == b"\0":
         return 1, None
@@ -164,7 +165,7 @@ def state_of(payload: bytes) -> VescState | None:
 
 
 def imu_of(payload: bytes) -> VescImu | None:
-    """Return what the answer to `GET_IMU` says; None if it is too short or no numbers.
+    """Return what the answer to `GET_IMU` says; None if it is too short or not finite.
 
     A mask says which values there are; the others are 0.
     """

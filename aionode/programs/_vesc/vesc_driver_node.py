@@ -1,4 +1,4 @@
-"""``vesc_driver vesc_driver_node``: commands the motor and the servo of a VESC, and asks it."""
+"""``vesc_driver vesc_driver_node``: drives the motor and servo of a VESC, and reads it."""
 
 from __future__ import annotations
 

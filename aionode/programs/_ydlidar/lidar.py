@@ -43,7 +43,7 @@ BROKEN: Final = 2
 PAUSE_SEC: Final = 0.03
 FASTEST_HZ: Final = 100.0
 TG_TOO_FAST: Final = 0.4
-"""How much the frequency of TG models is too high."""
+"""By how many hertz the frequency that TG models report is too high."""
 
 SOON_SEC: Final = 1.0
 LATER_SEC: Final = 2.0

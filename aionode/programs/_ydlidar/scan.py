@@ -26,7 +26,7 @@ class Form(NamedTuple):
         ranges: The least and the greatest range, in metres.
         ignored: Pairs of angles between which no ranges are used, in radians.
         is_turned: Whether the zero of the lidar is at the back.
-        is_mirrored: Whether angles are counted counterclockwise, unlike the lidar does.
+        is_mirrored: Whether angles are counted counterclockwise, unlike by the lidar.
         missing: What stands for a range that was not measured.
     """
 

@@ -13,6 +13,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.programs._serial import SerialPort
+from aionode.programs._stamps import stamp_of
 from aionode.programs._wall_timer import create_wall_timer, wall_clock
 from aionode.programs._ydlidar.lidar import TRIANGLE, TYPES, Lidar
 from aionode.programs._ydlidar.packets import SAMPLES, Packet, Packets, Points
@@ -226,7 +227,7 @@ class YdlidarDriver(Node):
         count = self.count if self.is_fixed else size
         scan = scan_of(points, self.form, max(count, 2), lidar.offset)
         scan.scan_time, scan.time_increment = seconds, seconds / size
-        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(began_ns, 1_000_000_000)
+        scan.header.stamp = stamp_of(began_ns)
         self.publisher.publish(scan)
 
     def fixed_count(self, size: int, seconds: float, lidar: Lidar) -> int:
