@@ -406,6 +406,16 @@ async def test_what_does_not_fit_is_refused(
         start(kind, **parameters)
 
 
+@pytest.mark.parametrize("package", ["av", "PIL"])
+async def test_a_package_that_is_missing_is_named_at_once(
+    start: Start, videos: Path, monkeypatch: pytest.MonkeyPatch, package: str
+) -> None:
+    """Not only once somebody subscribes to compressed pictures."""
+    monkeypatch.setattr(video, "find_spec", {"av": 1, "PIL": 1, package: None}.get)
+    with pytest.raises(CommandError, match=r"pip install 'aionode\[camera\]'"):
+        start(UsbCam, video_device=str(videos / "plain.mkv"))
+
+
 async def test_a_file_that_is_no_video_is_said_and_tried_again(
     start: Start, viewer: Viewer, tmp_path: Path, videos: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -78,7 +79,7 @@ def check_device(path: str, *, may_come_later: bool = False) -> None:
     """Refuse a camera that cannot be read, or that does not exist and may not come later.
 
     Raises:
-        CommandError: There is no such camera, or PyAV is not installed.
+        CommandError: There is no such camera, or PyAV or Pillow is not installed.
     """
     if not may_come_later and not Path(path).exists():
         there = sorted(str(each) for each in Path("/dev").glob("video*"))
@@ -86,12 +87,11 @@ def check_device(path: str, *, may_come_later: bool = False) -> None:
             f"video_device {path!r} does not exist; cameras here: {', '.join(there) or 'none'}; "
             "the path of a video file works as well"
         )
-    try:
-        import av  # noqa: F401  # only whether it is there
-    except ModuleNotFoundError:
+    if find_spec("av") is None or find_spec("PIL") is None:
         raise CommandError(
-            "cameras are read by PyAV, which is not installed: pip install 'aionode[camera]'"
-        ) from None
+            "cameras are read by PyAV and their pictures compressed by Pillow, and one of them is "
+            "not installed: pip install 'aionode[camera]'"
+        )
 
 
 def name_of(path: str) -> str:
