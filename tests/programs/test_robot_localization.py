@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import Callable
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from aionode import Time
+from aionode._process.concurrency import checkpoint
 from aionode.errors import CommandError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.geometry_msgs.msg import (
@@ -29,7 +31,6 @@ from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.programs._poses import quaternion_of
 from aionode.programs._robot_localization.ekf_node import EkfNode
 from aionode.programs._robot_localization.filter_node import FilterNode
-from aionode.programs._robot_localization.sensors import MAX_QUEUED
 from aionode.programs._robot_localization.ukf_node import UkfNode
 from aionode.testing import ManualClock, settle
 from aionode.tf import StaticTransformBroadcaster
@@ -447,24 +448,67 @@ async def test_measurements_of_the_future_wait_for_their_time(robot: Make) -> No
     assert await it.tick(0.5) is not None
 
 
-async def test_only_so_many_measurements_wait(robot: Make) -> None:
+@pytest.fixture
+def most(monkeypatch: pytest.MonkeyPatch) -> int:
+    """Let few measurements wait, and return how many."""
+    monkeypatch.setattr("aionode.programs._robot_localization.sensors.MAX_QUEUED", 20)
+    return 20
+
+
+async def test_only_so_many_measurements_wait(robot: Make, most: int) -> None:
     """Somebody could fill the memory otherwise."""
     it = await robot(
         odom0="wheels",
         odom0_config=uses(0),
-        odom0_queue_size=2 * MAX_QUEUED,
+        odom0_queue_size=2 * most,
         print_diagnostics=True,
     )
-    publisher = it.node.create_publisher(Odometry, "wheels", 2 * MAX_QUEUED)
+    publisher = it.node.create_publisher(Odometry, "wheels", 2 * most)
     await settle()
     msg = it.odometry(1.0, late_sec=-50.0)
-    for _ in range(MAX_QUEUED + 5):
+    for _ in range(most + 5):
         publisher.publish(msg)
     await it.tick(1.2)
 
-    assert len(it.program.queue) == MAX_QUEUED
+    assert len(it.program.queue) == most
     texts = [value.value for each in it.statuses for value in each.values]
     assert any("wait for their time" in text for text in texts)
+
+
+async def test_a_sensor_whose_clock_is_ahead_keeps_no_other_out(robot: Make, most: int) -> None:
+    """It fills the queue that all sensors share."""
+    it = await robot(
+        odom0="wheels", odom0_config=uses(0), odom0_queue_size=2 * most,
+        odom1="other", odom1_config=uses(1),
+    )  # fmt: skip
+    publisher = it.node.create_publisher(Odometry, "wheels", 2 * most)
+    await settle()
+    ahead = it.odometry(1.0, late_sec=-50.0)
+    for _ in range(most):
+        publisher.publish(ahead)
+    await settle()
+    found = await it.send("other", it.odometry(y=2.0))
+
+    assert found is not None
+    assert found.pose.pose.position.y == pytest.approx(2.0, abs=0.01)
+
+
+async def test_others_have_their_turn_while_many_measurements_are_used(robot: Make) -> None:
+    """A thousand take half a second, in which an emergency stop should not wait."""
+    it = await robot(odom0="wheels", odom0_config=uses(0), odom0_queue_size=100)
+    publisher = it.node.create_publisher(Odometry, "wheels", 100)
+    await settle()
+    for at in range(50):
+        publisher.publish(it.odometry(at / 100, late_sec=1.0 - at / 100))
+    await settle()
+    left = []
+    async with asyncio.TaskGroup() as tasks:
+        update = tasks.create_task(it.program.update())
+        while not update.done():
+            left.append(len(it.program.due))
+            await checkpoint()
+
+    assert len(set(left)) > 40
 
 
 @pytest.mark.parametrize("stamp", [0, -5])

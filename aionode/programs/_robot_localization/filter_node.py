@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from aionode import Node, Time
+from aionode._process.concurrency import checkpoint
 from aionode.diagnostics import FrequencyStatusParam, HeaderlessTopicDiagnostic, Updater
 from aionode.errors import escaped
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticStatus
@@ -74,6 +75,7 @@ class FilterNode(SensingNode):
     def __init__(self, name: str, make_filter: Callable[[Node], Filter]) -> None:
         super().__init__(name, make_filter)
         self.broadcaster = TransformBroadcaster(self)
+        self.due: deque[Measurement] = deque()
         self.used: deque[Measurement] = deque(maxlen=MAX_QUEUED)
         self.states: deque[tuple[int, Array, Array]] = deque(maxlen=MAX_QUEUED)
         self.published_ns = 0
@@ -135,6 +137,7 @@ class FilterNode(SensingNode):
         """Forget all measurements."""
         self.measuring.forget()
         self.queue.clear()
+        self.due.clear()
         self.used.clear()
         self.states.clear()
 
@@ -203,7 +206,7 @@ class FilterNode(SensingNode):
             )
         return response
 
-    def update(self) -> None:
+    async def update(self) -> None:
         """Use the measurements that are due, and publish the estimate."""
         if not self.is_enabled:
             self.get_logger().info(
@@ -214,7 +217,7 @@ class FilterNode(SensingNode):
             return
         now_ns = self.now_ns()
         if self.is_on:
-            self.integrate(now_ns)
+            await self.integrate(now_ns)
             self.differentiate(now_ns)
         else:
             self.queue.clear()
@@ -229,8 +232,11 @@ class FilterNode(SensingNode):
             while self.states and self.states[0][0] < oldest_ns:
                 self.states.popleft()
 
-    def integrate(self, now_ns: int) -> None:
-        """Use the measurements that are due, in the order of their times."""
+    async def integrate(self, now_ns: int) -> None:
+        """Use the measurements that are due, in the order of their times.
+
+        Others have their turn between two of them: thousands may be due at once.
+        """
         predicts = self.predicts_always
         if self.queue:
             restored = 0
@@ -239,7 +245,9 @@ class FilterNode(SensingNode):
                 self.revert(self.queue[0][0] - 1)
                 restored = len(self.queue) - before
             while self.queue and self.queue[0][0] <= now_ns:
-                measurement = heapq.heappop(self.queue)[2]
+                self.due.append(heapq.heappop(self.queue)[2])
+            while self.due:
+                measurement = self.due.popleft()
                 if restored > 0 and measurement.command is not None:
                     control = self.filter.control
                     control.twist, control.time_ns = measurement.command, measurement.command_ns
@@ -247,7 +255,7 @@ class FilterNode(SensingNode):
                 self.filter.process(measurement)
                 if self.is_smoothing:
                     self.used.append(measurement)
-                    if not self.queue or self.queue[0][0] != self.filter.time_ns:
+                    if not self.due or self.due[0].time_ns != self.filter.time_ns:
                         self.states.append(
                             (
                                 self.filter.time_ns,
@@ -255,6 +263,7 @@ class FilterNode(SensingNode):
                                 self.filter.covariance.copy(),
                             )
                         )
+                await checkpoint()
         elif self.filter.is_initialized:
             predicts |= now_ns - self.filter.time_ns >= self.sensor_timeout_ns
         if self.filter.is_initialized and predicts:

@@ -264,16 +264,19 @@ class SensingNode(SettingsNode):
         self.measuring.last_ns[sensor.name] = stamp_ns
         if measurement is None:
             return
-        if len(self.queue) >= MAX_QUEUED:
-            self.tell(
-                f"{sensor.name}_timestamp",
-                f"More than {MAX_QUEUED} measurements wait for their time, so the one of "
-                f"{sensor.name} is ignored. Are the clocks of all computers synchronized?",
-            )
-            return
         measurement.command = self.filter.control.twist
         measurement.command_ns = self.filter.control.time_ns
         self.put(measurement)
+        if len(self.queue) > MAX_QUEUED:
+            # The latest is furthest from its time, and mostly of the sensor whose clock is ahead.
+            latest = max(self.queue)
+            self.queue.remove(latest)
+            heapq.heapify(self.queue)
+            self.tell(
+                f"{latest[2].source}_timestamp",
+                f"More than {MAX_QUEUED} measurements wait for their time, so the latest, of "
+                f"{latest[2].source}, is ignored. Are the clocks of all computers synchronized?",
+            )
 
     def put(self, measurement: Measurement) -> None:
         """Queue a measurement for the next update."""
