@@ -207,6 +207,23 @@ def test_guesses_that_touch_are_one_cluster_and_the_heaviest_is_the_estimate() -
     assert cloud.estimate().covariance[0, 0] == pytest.approx(poses[:, 0].var())
 
 
+@pytest.mark.parametrize("size", [1, 3, 6, 40])
+def test_bins_that_touch_each_other_are_a_cluster(size: int) -> None:
+    """Directly, or by others in between; at all densities."""
+    bins = np.random.default_rng(size).integers(-size, size, (200, 3))
+    found = clusters_of(bins)
+    expected = np.arange(len(bins))
+    touching = (np.abs(bins[:, None] - bins) <= 1).all(axis=2)
+    for _ in bins:
+        expected = np.where(touching, expected, len(bins)).min(axis=1)
+
+    assert (
+        np.unique(np.column_stack([found, expected]), axis=0).shape[0]
+        == len(set(found.tolist()))
+        == len(set(expected.tolist()))
+    )
+
+
 class World:
     """A robot in the room: its odometry, its laser, and what the program says."""
 

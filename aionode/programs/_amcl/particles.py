@@ -19,6 +19,9 @@ BIN: Final = np.array([0.5, 0.5, math.radians(10.0)])
 
 Bins = npt.NDArray[np.int64]
 
+AROUND: Final = np.array(list(np.ndindex(3, 3, 3)))[14:] - 1
+"""The steps from a bin to half of those that touch it; the others are the same backwards."""
+
 NO_WAY: Final = 0.01
 """A shorter way has no direction."""
 
@@ -117,7 +120,7 @@ class Particles:
 
     def needed(self, poses: Array) -> int:
         """Return how many of these poses suffice: after how many draws few new bins appear."""
-        _, first = np.unique(bins_of(poses), axis=0, return_index=True)
+        _, first = np.unique(keys_of(bins_of(poses))[0], return_index=True)
         filled = np.zeros(len(poses), dtype=int)
         filled[first] = 1
         enough = np.arange(1, len(poses) + 1) > self.limits(np.cumsum(filled))
@@ -146,26 +149,31 @@ def bins_of(poses: Array) -> Bins:
     return result
 
 
+def keys_of(bins: Bins) -> tuple[Bins, Bins]:
+    """Return a number for each bin, and how much it grows with each coordinate."""
+    spans = np.ptp(bins, axis=0) + 3  # with room for a bin beyond each end
+    strides = np.array([spans[1] * spans[2], spans[2], 1])
+    return bins @ strides, strides
+
+
 def clusters_of(bins: Bins) -> Bins:
     """Return the cluster of each bin: bins that touch each other, also by a corner, are one."""
-    distinct, index = np.unique(bins, axis=0, return_inverse=True)
-    left = {tuple(row): at for at, row in enumerate(distinct.tolist())}
-    label = np.zeros(len(distinct), dtype=np.int64)
-    around = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
-    number = 0
-    while left:
-        first, at = left.popitem()
-        label[at] = number
-        edge = [first]
-        while edge:
-            x, y, yaw = edge.pop()
-            for i, j, k in around:
-                found = left.pop((x + i, y + j, yaw + k), None)
-                if found is not None:
-                    label[found] = number
-                    edge.append((x + i, y + j, yaw + k))
-        number += 1
-    return label[index.reshape(-1)]
+    keys, strides = keys_of(bins)
+    distinct, index = np.unique(keys, return_inverse=True)
+    pairs = []
+    for step in AROUND @ strides:
+        at = np.searchsorted(distinct, distinct + step)
+        touching = np.flatnonzero(distinct.take(at, mode="clip") == distinct + step)
+        pairs.append((at[touching], touching))
+    later, earlier = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    cluster = np.arange(len(distinct))
+    while (apart := cluster[later] != cluster[earlier]).any():
+        later, earlier = later[apart], earlier[apart]
+        ends = cluster[later], cluster[earlier]
+        np.minimum.at(cluster, np.maximum(*ends), np.minimum(*ends))
+        while (cluster[cluster] != cluster).any():
+            cluster = cluster[cluster]
+    return cluster[index.reshape(-1)]
 
 
 def statistics(poses: Array, weights: Array) -> tuple[Array, Array]:

@@ -267,7 +267,7 @@ class FilterNode(SensingNode):
         elif self.filter.is_initialized:
             predicts |= now_ns - self.filter.time_ns >= self.sensor_timeout_ns
         if self.filter.is_initialized and predicts:
-            self.filter.predict(now_ns)
+            self.filter.predict(max(now_ns, self.filter.time_ns))  # later after a `set_pose`
 
     def revert(self, time_ns: int) -> None:
         """Return to the estimate before a time, and queue the measurements since then again."""
