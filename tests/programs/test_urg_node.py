@@ -391,7 +391,7 @@ async def test_a_lidar_that_comes_later_is_found(
     assert (text + capsys.readouterr().err).count("cannot be reached") == 1
 
 
-@pytest.mark.parametrize("host", ["192.168..10", "a" * 70, "a\0b"])
+@pytest.mark.parametrize("host", ["192.168..10", "a" * 70])
 async def test_an_address_that_is_none_is_named(host: str) -> None:
     """Python's own error is about encodings."""
     with pytest.raises(OSError, match="is no address and no name of a host; check ip_address"):
