@@ -364,6 +364,15 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
         info_of(text)
 
 
+@pytest.mark.parametrize("field", ["k", "r", "p", "width", "binning_x"])
+def test_a_calibration_with_numbers_of_no_camera_is_the_same_error(field: str) -> None:
+    """It would end the camera when it is published."""
+    info = CameraInfo(width=4, height=3)
+    setattr(info, field, {"k": [1.0], "r": [1.0] * 10, "p": [1.0] * 9}.get(field, -1))
+    with pytest.raises(ValueError, match=rf"not a calibration: .*\.{field}: "):
+        info_of(text_of(info, "eye"))
+
+
 @pytest.mark.parametrize(
     "text", ["image_width: .inf", "[" * 5000, f"image_width: {'1:' * 20_000}1"]
 )

@@ -16,6 +16,7 @@ from aionode._process.bounded_yaml import loaded_yaml
 from aionode.errors import PackageNotFoundError
 from aionode.interfaces.sensor_msgs.msg import CameraInfo
 from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
+from aionode.message import check
 
 __all__ = ["Calibration", "info_of", "text_of"]
 
@@ -48,6 +49,7 @@ def info_of(text: str) -> CameraInfo:
         )
         for name, numbers in matrices.items():
             setattr(info, name, numbers)
+        check(info)
     except (
         yaml.YAMLError,
         LookupError,
@@ -57,11 +59,6 @@ def info_of(text: str) -> CameraInfo:
         ValueError,
     ) as error:
         raise ValueError(f"not a calibration: {type(error).__name__}: {error}") from None
-    sizes = [len(info.k), len(info.r), len(info.p)]
-    if sizes != [9, 9, 12]:
-        raise ValueError(
-            f"not a calibration: its matrices have {sizes} numbers, and need [9, 9, 12]"
-        )
     return info
 
 
@@ -115,7 +112,8 @@ class Calibration:
         except FileNotFoundError:
             self.log.warning(f"Camera calibration file {path} not found")
         except (OSError, ValueError) as error:
-            self.log.warning(f"Camera calibration file {path} is not used: {error}")
+            text = " ".join(str(error).split())  # those of YAML have several lines
+            self.log.warning(f"Camera calibration file {path} is not used: {text}")
 
     def path(self) -> Path | None:
         """Return the file of the calibration; None if its URL is invalid."""
