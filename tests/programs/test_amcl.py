@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -11,14 +12,14 @@ import pytest
 
 from aionode import Time
 from aionode.interfaces.geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
-from aionode.interfaces.nav2_msgs.msg import ParticleCloud
+from aionode.interfaces.nav2_msgs.msg import Particle, ParticleCloud
 from aionode.interfaces.nav2_msgs.srv import SetInitialPose
 from aionode.interfaces.nav_msgs.msg import OccupancyGrid
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.interfaces.std_srvs.srv import Empty
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.lifecycle import TransitionCallbackReturn
-from aionode.programs._amcl.amcl import Amcl, about_z, yaw_of
+from aionode.programs._amcl.amcl import Amcl, about_z, particles_of, yaw_of
 from aionode.programs._amcl.likelihood import Field, Sensor, distances_of
 from aionode.programs._amcl.particles import (
     Particles,
@@ -415,6 +416,25 @@ async def test_without_an_initial_pose_nothing_is_said(
 
     assert (it.poses, it.transforms) == ([], [])
     assert "Please set the initial pose" in caplog.text
+
+
+async def test_messages_of_guesses_are_made_in_a_thread(
+    world: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of 100,000 guesses take half a second, and of 2000, the default, 8 ms."""
+    threads: list[int] = []
+
+    def watched(rows: Any) -> list[Particle]:
+        threads.append(threading.get_ident())
+        return particles_of(rows)
+
+    monkeypatch.setattr("aionode.programs._amcl.amcl.particles_of", watched)
+    it = await world()
+    await it.call(Empty, "reinitialize_global_localization")
+    await it.scan(2.0, 1.5, 0.0, (0.0, 0.0, 0.0))
+
+    assert threads
+    assert threading.get_ident() not in threads
 
 
 async def test_global_localization_spreads_guesses_over_the_map(world: Callable[..., Any]) -> None:

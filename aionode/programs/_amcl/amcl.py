@@ -10,8 +10,10 @@ import numpy as np
 
 import aionode
 from aionode import DurabilityPolicy, Duration, QoSProfile, Time
+from aionode._process.concurrency import run_in_thread
 from aionode.errors import CommandError, TransformException, escaped
 from aionode.interfaces.geometry_msgs.msg import (
+    Point,
     Pose,
     PoseWithCovarianceStamped,
     Quaternion,
@@ -357,9 +359,9 @@ class Amcl(LifecycleNode):
                     Time(nanoseconds=stamp_of(scan)),
                     timeout_sec=self.given("transform_tolerance"),
                 )
-        self.use(scan)
+        await self.use(scan)
 
-    def use(self, scan: LaserScan) -> None:
+    async def use(self, scan: LaserScan) -> None:
         """Let a scan judge the guesses, if the robot has moved."""
         if not self.is_active:
             return
@@ -386,7 +388,7 @@ class Amcl(LifecycleNode):
             return
         if is_due and self.judge(scan, laser, delta):
             self.last, self.is_new, self.is_forced = pose, False, False
-            self.publish(scan, robot)
+            await self.publish(scan, robot)
         elif self.map_to_odom is not None:
             self.broadcast(stamp_ns)
 
@@ -436,7 +438,7 @@ class Amcl(LifecycleNode):
         result: Array = ends @ laser[:2, :2].T + laser[:2, 3]
         return result
 
-    def publish(self, scan: LaserScan, robot: Array) -> None:
+    async def publish(self, scan: LaserScan, robot: Array) -> None:
         """Publish where the robot is."""
         estimate = self.particles.estimate()
         x, y, yaw = map(float, estimate.pose)
@@ -452,20 +454,17 @@ class Amcl(LifecycleNode):
         self.pose_output.publish(msg)
         self.map_to_odom = pose_matrix(msg.pose.pose.position, about_z(yaw)) @ np.linalg.inv(robot)
         self.broadcast(stamp_of(scan))
-        self.publish_cloud()
+        await self.publish_cloud()
 
-    def publish_cloud(self) -> None:
+    async def publish_cloud(self) -> None:
         """Publish the guesses, if somebody looks."""
         if not self.cloud_output.get_subscription_count():
             return
         cloud = ParticleCloud()
         cloud.header.frame_id = self.given("global_frame_id")
         cloud.header.stamp = self.get_clock().now().to_msg()
-        rows = np.column_stack([self.particles.poses, self.particles.weights]).tolist()
-        for x, y, yaw, weight in rows:
-            pose = Pose(orientation=about_z(yaw))
-            pose.position.x, pose.position.y = x, y
-            cloud.particles.append(Particle(pose=pose, weight=weight))
+        rows = np.column_stack([self.particles.poses, self.particles.weights])
+        cloud.particles = await run_in_thread(particles_of, rows)  # of thousands, this takes long
         self.cloud_output.publish(cloud)
 
     def broadcast(self, stamp_ns: int) -> None:
@@ -489,6 +488,15 @@ class Amcl(LifecycleNode):
     def warn(self, text: str) -> None:
         """Warn, not at every scan."""
         self.get_logger().warning(escaped(text, one_line=True), throttle_duration_sec=TELL_SEC)
+
+
+def particles_of(rows: Array) -> list[Particle]:
+    """Return guesses as messages: rows of x, y, heading and weight."""
+    found = []
+    for x, y, yaw, weight in rows.tolist():
+        pose = Pose(position=Point(x=x, y=y), orientation=about_z(yaw))
+        found.append(Particle(pose=pose, weight=weight))
+    return found
 
 
 def stamp_of(msg: Any) -> int:
