@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from aionode.testing import ManualClock, settle
 from aionode.tf import StaticTransformBroadcaster, TransformBroadcaster
 from tests.programs.conftest import Start
+from tests.support.waiting import until
 
 WIDTH, HEIGHT, CELL = 6.0, 4.0, 0.05
 NO_NOISE = (0.0,) * 5
@@ -435,6 +437,40 @@ async def test_messages_of_guesses_are_made_in_a_thread(
 
     assert threads
     assert threading.get_ident() not in threads
+
+
+@pytest.fixture
+def comparing(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[threading.Event, threading.Event]]:
+    """Let scans be compared with the map only when the second event is set; the first tells."""
+    began, may_end = threading.Event(), threading.Event()
+    likelihood = Sensor.likelihood
+
+    def slow(*arguments: Any) -> Any:
+        began.set()
+        assert may_end.wait(10)
+        return likelihood(*arguments)
+
+    monkeypatch.setattr(Sensor, "likelihood", slow)
+    yield began, may_end
+    may_end.set()
+
+
+async def test_guesses_that_are_replaced_meanwhile_are_not_weighed(
+    world: Callable[..., Any], comparing: tuple[threading.Event, threading.Event]
+) -> None:
+    """Scans are compared with the map in a thread, as this takes a second for 100,000 guesses."""
+    began, may_end = comparing
+    it = await world()
+    await it.call(Empty, "reinitialize_global_localization")
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(it.scan(2.0, 1.5, 0.0, (0.0, 0.0, 0.0)))
+        await until(began.is_set)
+        it.program.on_global_localization(None, Empty.Response())
+        poses = it.program.particles.poses
+        may_end.set()
+
+    assert it.program.particles.poses is poses
+    assert it.poses == []
 
 
 async def test_global_localization_spreads_guesses_over_the_map(world: Callable[..., Any]) -> None:

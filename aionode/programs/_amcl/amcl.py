@@ -386,10 +386,10 @@ class Amcl(LifecycleNode):
                 "AMCL cannot publish a pose or update the transform. Please set the initial pose..."
             )
             return
-        if is_due and self.judge(scan, laser, delta):
+        if is_due and await self.judge(scan, laser, delta):
             self.last, self.is_new, self.is_forced = pose, False, False
             await self.publish(scan, robot)
-        elif self.map_to_odom is not None:
+        elif self.map_to_odom is not None and self.is_active:
             self.broadcast(stamp_ns)
 
     def looked_up(self, target: str, source: str, time_ns: int) -> Array:
@@ -397,8 +397,11 @@ class Amcl(LifecycleNode):
         found = self.buffer.lookup_transform_core(target, source, Time(nanoseconds=time_ns))
         return pose_matrix(found.transform.translation, found.transform.rotation)
 
-    def judge(self, scan: LaserScan, laser: Array, delta: Array) -> bool:
-        """Move the guesses, weigh them by a scan and draw them anew; return whether it fits."""
+    async def judge(self, scan: LaserScan, laser: Array, delta: Array) -> bool:
+        """Move the guesses, weigh them by a scan and draw them anew; return whether it fits.
+
+        It does not fit guesses that somebody has replaced meanwhile.
+        """
         field = self.field
         longest = min(float(scan.range_max), self.given("laser_max_range"))
         if self.given("laser_max_range") <= 0.0:
@@ -411,7 +414,10 @@ class Amcl(LifecycleNode):
             self.particles.poses = self.move(
                 self.particles.poses, self.last, delta, self.alpha, self.random
             )
-        likelihood = self.sensor.likelihood(self.particles.poses, points, field, longest)
+        poses = self.particles.poses
+        likelihood = await run_in_thread(self.sensor.likelihood, poses, points, field, longest)
+        if self.particles.poses is not poses or not self.is_active:
+            return False
         self.particles.weigh(likelihood)
         self.count += 1
         if self.count % self.given("resample_interval") == 0:
