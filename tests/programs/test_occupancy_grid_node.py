@@ -221,7 +221,7 @@ def test_a_map_with_fewer_submaps_is_not_painted_twice() -> None:
 
 def test_a_stroke_of_a_map_with_larger_cells_paints_fewer_of_them() -> None:
     """Each is the mean of many cells of the submap, and Ctrl-C waits for a stroke."""
-    coarse = Canvas([submap(uniform(1600, 1600, 1, 0), pose_at())], 16 * RESOLUTION)
+    coarse = Canvas([submap(uniform(1280, 1280, 1, 0), pose_at())], 16 * RESOLUTION)
     counts = [np.count_nonzero(coarse.seen) for _ in coarse.strokes()]
 
     assert max(np.diff([0, *counts])) * 17 * 17 <= 1 << 20
