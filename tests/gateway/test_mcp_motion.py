@@ -14,6 +14,7 @@ import pytest
 
 from aionode.gateway import Assistant, Gateway, Policy, _stopping
 from aionode.gateway._stopping import StopMotion
+from aionode.gateway.session.arrivals import HAS_WAITED
 from aionode.node import Node
 from aionode.testing import settle
 from tests.support.mcp_bench import POLICY, Bench, bench_of
@@ -123,9 +124,14 @@ async def raw_call(gateway: object, tool: str, arguments: dict[str, Any]) -> Asy
                "mcp-protocol-version": "2025-11-25"}  # fmt: skip
         await client.post(address, json=request("notifications/initialized", None), headers=own)
         called = request("tools/call", 2, name=tool, arguments=arguments)
-        # Its headers come with its first event, so nothing is known of it here.
+
+        async def call() -> None:
+            # Its headers come with its first event, so nothing is known here unless it is refused.
+            while HAS_WAITED in (await client.post(address, json=called, headers=own)).text:
+                called["id"] += 1
+
         async with asyncio.TaskGroup() as tasks:
-            calling = tasks.create_task(client.post(address, json=called, headers=own))
+            calling = tasks.create_task(call())
             yield
             calling.cancel()
 

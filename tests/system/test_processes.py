@@ -647,9 +647,9 @@ def test_members_may_be_added_before_there_is_an_event_loop(output: io.StringIO)
     async def main() -> None:
         async with system:
             await system.ready()
+            await until(lambda: "first | first" in output.getvalue())
 
     asyncio.run(main())
-    assert "first | first" in output.getvalue()
 
 
 async def test_nothing_starts_while_the_system_ends(system: System) -> None:
