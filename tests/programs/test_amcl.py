@@ -125,7 +125,7 @@ def test_beams_are_chosen_evenly() -> None:
         ((0, 0, math.pi / 2), (0, 1, 0), (2, 3, 0), (3, 3, 0)),  # in other coordinates
     ],
 )
-def test_guesses_move_as_the_odometry_does(before: Any, delta: Any, pose: Any, after: Any) -> None:
+def test_particles_move_as_odometry_does(before: Any, delta: Any, pose: Any, after: Any) -> None:
     """In their own direction; without noise, exactly."""
     for move in (moved_differentially, moved_sideways):
         found = move(
@@ -139,7 +139,7 @@ def test_guesses_move_as_the_odometry_does(before: Any, delta: Any, pose: Any, a
         assert found[0] == pytest.approx(np.array(after, dtype=float), abs=1e-9)
 
 
-def test_a_way_makes_guesses_uncertain() -> None:
+def test_a_way_makes_particles_uncertain() -> None:
     """The standard deviation is the root of alpha3 times the way."""
     poses = np.zeros((20_000, 3))
     moved = moved_differentially(
@@ -156,7 +156,7 @@ def particles(**more: Any) -> Particles:
     return Particles(np.random.default_rng(1), **settings)
 
 
-def test_as_many_guesses_are_drawn_as_their_spread_needs() -> None:
+def test_as_many_particles_are_drawn_as_their_spread_needs() -> None:
     """For ten bins, Fox's formula gives 9 / 0.1 · (1 - 2/81 + √(2/81) · 0.99)³ = 130.2."""
     assert particles().limits(np.array([1, 2, 10, 1000])).tolist() == [2000, 100, 131, 2000]
 
@@ -166,7 +166,7 @@ def test_as_many_guesses_are_drawn_as_their_spread_needs() -> None:
     assert len(cloud.poses) == 132
 
 
-def test_likely_guesses_replace_the_others() -> None:
+def test_likely_particles_replace_the_others() -> None:
     """Those without any weight are gone."""
     cloud = particles()
     cloud.spread(np.array([[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]))
@@ -179,7 +179,7 @@ def test_likely_guesses_replace_the_others() -> None:
     assert (cloud.poses[:, 0] == 0.0).mean() == pytest.approx(0.75, abs=0.12)
 
 
-def test_likelihoods_that_are_none_leave_all_guesses_equal() -> None:
+def test_likelihoods_that_are_none_leave_all_particles_equal() -> None:
     """A message of somebody else must not end the estimate."""
     cloud = particles()
     cloud.spread(np.zeros((2, 3)))
@@ -189,7 +189,7 @@ def test_likelihoods_that_are_none_leave_all_guesses_equal() -> None:
 
 
 def test_a_robot_that_was_carried_away_is_sought_everywhere() -> None:
-    """As far as the guesses fit worse than usual: here 0.5 - 0.1 · 0.9 of before, by averages."""
+    """As far as the particles fit worse than usual: here 0.5 - 0.1 · 0.9 of before, by averages."""
     cloud = particles(slow=0.001, fast=0.5)
     cloud.spread(np.zeros((200, 3)))
     cloud.weigh(np.full(200, 1.0))
@@ -199,7 +199,7 @@ def test_a_robot_that_was_carried_away_is_sought_everywhere() -> None:
     assert (cloud.poses[:, 0] == 9.0).mean() == pytest.approx(0.4, abs=0.1)
 
 
-def test_guesses_that_touch_are_one_cluster_and_the_heaviest_is_the_estimate() -> None:
+def test_particles_that_touch_are_one_cluster_and_the_heaviest_is_the_estimate() -> None:
     """Not their mean, where the robot surely is not. Boxes may touch by a corner."""
     poses = np.array([[0.1, 0.1, 0.0], [0.6, 0.6, 0.0], [5.0, 0.0, 0.0]])
     assert len(set(clusters_of(bins_of(poses)).tolist())) == 2
@@ -420,10 +420,10 @@ async def test_without_an_initial_pose_nothing_is_said(
     assert "Please set the initial pose" in caplog.text
 
 
-async def test_messages_of_guesses_are_made_in_a_thread(
+async def test_messages_of_particles_are_made_in_a_thread(
     world: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Those of 100,000 guesses take half a second, and of 2000, the default, 8 ms."""
+    """Those of 100,000 particles take half a second, and of 2000, the default, 8 ms."""
     threads: list[int] = []
 
     def watched(rows: Any) -> list[Particle]:
@@ -455,10 +455,10 @@ def comparing(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[threading.Event
     may_end.set()
 
 
-async def test_guesses_that_are_replaced_meanwhile_are_not_weighed(
+async def test_particles_that_are_replaced_meanwhile_are_not_weighed(
     world: Callable[..., Any], comparing: tuple[threading.Event, threading.Event]
 ) -> None:
-    """Scans are compared with the map in a thread, as this takes a second for 100,000 guesses."""
+    """Scans are compared with the map in a thread, as this takes a second for 100,000 particles."""
     began, may_end = comparing
     it = await world()
     await it.call(Empty, "reinitialize_global_localization")
@@ -473,7 +473,9 @@ async def test_guesses_that_are_replaced_meanwhile_are_not_weighed(
     assert it.poses == []
 
 
-async def test_global_localization_spreads_guesses_over_the_map(world: Callable[..., Any]) -> None:
+async def test_global_localization_spreads_particles_over_a_map(
+    world: Callable[..., Any],
+) -> None:
     """Whoever looks sees all of them."""
     it = await world()
     await it.call(Empty, "reinitialize_global_localization")
@@ -515,7 +517,7 @@ async def test_an_initial_pose_that_cannot_be_used_is_named(
 async def test_a_pose_that_may_be_anywhere_is_none(
     world: Callable[..., Any], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """With the variance of a joker, the guesses would be beyond all numbers."""
+    """With the variance of a joker, the particles would be beyond all numbers."""
     it = await world()
     msg = it.pose(2.0, 1.5, 0.0)
     msg.pose.covariance[0] = 1e308

@@ -394,7 +394,7 @@ async def test_a_lidar_that_comes_later_is_found(
 @pytest.mark.parametrize("host", ["192.168..10", "a" * 70])
 async def test_an_address_that_is_none_is_named(host: str) -> None:
     """Python's own error is about encodings."""
-    with pytest.raises(OSError, match="is no address and no name of a host; check ip_address"):
+    with pytest.raises(OSError, match="is neither an address nor a host name; check ip_address"):
         await Socket.open(host, 10940)
 
 

@@ -225,6 +225,17 @@ async def test_the_end_of_the_node_releases_the_motor(car: Car) -> None:
     assert car.vesc.commands[-1] == RELEASE
 
 
+async def test_the_name_of_the_hardware_is_logged_escaped(
+    vesc: Vesc, driving: Callable[..., Any], caplog: pytest.LogCaptureFixture
+) -> None:
+    """A device could otherwise clear the terminal."""
+    vesc.answers[GET_FIRMWARE] = b"\x00\x06\x02VESC\x1b[2J\0" + bytes(13)
+    caplog.set_level("INFO")
+    await driving()
+
+    assert r"-=VESC\x1b[2J=-" in caplog.text
+
+
 async def test_no_command_is_passed_before_the_vesc_has_answered(
     vesc: Vesc, manual_clock: ManualClock, start: Start, node_factory: Callable[..., Any]
 ) -> None:

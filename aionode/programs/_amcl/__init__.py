@@ -1,1 +1,1 @@
-"""AMCL: where a robot is on a map, by a cloud of guesses that laser scans judge."""
+"""AMCL: where a robot is on a map, by a cloud of particles that laser scans judge."""

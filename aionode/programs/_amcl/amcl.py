@@ -109,7 +109,7 @@ class Amcl(LifecycleNode):
         )
         self.field: Field | None = None
         self.is_known = False
-        self.is_new = True  # the filter has used no scan since its guesses were placed
+        self.is_new = True  # the filter has used no scan since its particles were placed
         self.is_forced = False
         self.count = 0
         self.last: Array = np.zeros(3)  # the pose of the odometry at the last update
@@ -155,7 +155,7 @@ class Amcl(LifecycleNode):
         """Make the filter.
 
         Raises:
-            CommandError: A parameter does not fit.
+            CommandError: A parameter is invalid.
         """
         model, robot = self.given("laser_model_type"), self.given("robot_model_type")
         if model not in MODELS:
@@ -199,7 +199,7 @@ class Amcl(LifecycleNode):
         """Reject numbers that no filter can use.
 
         Raises:
-            CommandError: A parameter does not fit.
+            CommandError: A parameter is invalid.
         """
         for name in ("laser_likelihood_max_dist", "sigma_hit", "pf_err", "resample_interval"):
             if not 0 < self.given(name) < math.inf:
@@ -300,7 +300,7 @@ class Amcl(LifecycleNode):
             self.place(msg)
 
     def place(self, msg: PoseWithCovarianceStamped) -> None:
-        """Spread the guesses around a pose, moved by what the robot drove since then."""
+        """Spread the particles around a pose, moved by what the robot drove since then."""
         base, odom = self.given("base_frame_id"), self.given("odom_frame_id")
         pose = pose_matrix(msg.pose.pose.position, msg.pose.pose.orientation)
         stamp_ns = stamp_of(msg)
@@ -331,7 +331,7 @@ class Amcl(LifecycleNode):
         return response
 
     def on_global_localization(self, _request: Any, response: Empty.Response) -> Empty.Response:
-        """Begin with guesses all over the map."""
+        """Begin with particles all over the map."""
         if self.field is None or not len(self.field.free):
             self.get_logger().error("There is no map with free cells yet")
             return response
@@ -362,7 +362,7 @@ class Amcl(LifecycleNode):
         await self.use(scan)
 
     async def use(self, scan: LaserScan) -> None:
-        """Let a scan judge the guesses, if the robot has moved."""
+        """Let a scan judge the particles, if the robot has moved."""
         if not self.is_active:
             return
         if self.field is None:
@@ -398,9 +398,9 @@ class Amcl(LifecycleNode):
         return pose_matrix(found.transform.translation, found.transform.rotation)
 
     async def judge(self, scan: LaserScan, laser: Array, delta: Array) -> bool:
-        """Move the guesses, weigh them by a scan and draw them anew; return whether it fits.
+        """Move the particles, weigh them by a scan and draw them anew; return whether it was used.
 
-        It does not fit guesses that somebody has replaced meanwhile.
+        It is not used if somebody has replaced the particles meanwhile.
         """
         field = self.field
         longest = min(float(scan.range_max), self.given("laser_max_range"))
@@ -463,7 +463,7 @@ class Amcl(LifecycleNode):
         await self.publish_cloud()
 
     async def publish_cloud(self) -> None:
-        """Publish the guesses, if somebody looks."""
+        """Publish the particles, if somebody looks."""
         if not self.cloud_output.get_subscription_count():
             return
         cloud = ParticleCloud()
@@ -497,7 +497,7 @@ class Amcl(LifecycleNode):
 
 
 def particles_of(rows: Array) -> list[Particle]:
-    """Return guesses as messages: rows of x, y, heading and weight."""
+    """Return particles as messages: rows of x, y, heading and weight."""
     found = []
     for x, y, yaw, weight in rows.tolist():
         pose = Pose(position=Point(x=x, y=y), orientation=about_z(yaw))

@@ -1,4 +1,4 @@
-"""The cloud of guesses: how it moves, and how the better guesses replace the others."""
+"""The cloud of particles: how it moves, and how the better particles replace the others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aionode.programs._poses import Array, wrapped
 __all__ = ["Estimate", "Particles", "moved_differentially", "moved_sideways"]
 
 BIN: Final = np.array([0.5, 0.5, math.radians(10.0)])
-"""Guesses within such a box count as one, for how many are needed and for clusters."""
+"""Particles within such a box count as one, for how many are needed and for clusters."""
 
 Bins = npt.NDArray[np.int64]
 
@@ -32,7 +32,7 @@ class Estimate:
 
     Attributes:
         pose: x, y and the heading of the heaviest cluster.
-        covariance: Of all guesses, for x, y and the heading.
+        covariance: Of all particles, for x, y and the heading.
     """
 
     pose: Array
@@ -40,11 +40,11 @@ class Estimate:
 
 
 class Particles:
-    """Guesses of where the robot is, with weights.
+    """Possible poses of the robot, with weights.
 
     Args:
         random: The source of chance.
-        least: The lowest number of guesses.
+        least: The lowest number of particles.
         most: The highest.
         error: How far their distribution may be off.
         z: The standard score for how sure that is.
@@ -75,19 +75,19 @@ class Particles:
         self.spread(np.zeros((1, 3)))
 
     def spread(self, poses: Array) -> None:
-        """Replace the guesses by equally likely ones."""
+        """Replace the particles by equally likely ones."""
         self.poses = poses
         self.weights: Array = np.full(len(poses), 1.0 / len(poses))
         self.slow_average = self.fast_average = 0.0
 
     def place(self, mean: Sequence[float], covariance: Array) -> None:
-        """Spread guesses around a pose."""
+        """Spread particles around a pose."""
         self.spread(
             self.random.multivariate_normal(mean, covariance, self.most, check_valid="ignore")
         )
 
     def weigh(self, likelihood: Array) -> None:
-        """Multiply the weights by how likely each guess is."""
+        """Multiply the weights by how likely each particle is."""
         weights = self.weights * likelihood
         total = float(weights.sum())
         if not 0.0 < total < math.inf:
@@ -100,10 +100,10 @@ class Particles:
             setattr(self, name, before + rate * (average - before) if before else average)
 
     def resample(self, anywhere: Callable[[int], Array]) -> None:
-        """Draw guesses anew, heavier ones more often, and as many as their spread needs.
+        """Draw particles anew, heavier ones more often, and as many as their spread needs.
 
         Args:
-            anywhere: Returns poses that know nothing: some are drawn when the guesses fit much
+            anywhere: Returns poses that know nothing: some are drawn when the particles fit much
                 worse than usual, as the robot may have been carried away.
         """
         lost = 0.0
@@ -127,7 +127,7 @@ class Particles:
         return int(np.argmax(enough)) + 1 if enough.any() else len(poses)
 
     def limits(self, count: Bins) -> Array:
-        """Return how many guesses so many filled bins need, after Fox (2001)."""
+        """Return how many particles so many filled bins need, after Fox (2001)."""
         more = np.maximum(count - 1, 1)
         part = 2.0 / (9.0 * more)
         needed = np.ceil(more / (2.0 * self.error) * (1.0 - part + np.sqrt(part) * self.z) ** 3)

@@ -72,7 +72,7 @@ def flags_of(words: Sequence[str]) -> tuple[Flags, list[str]]:
     """Return the flags of a command line, written as in gflags, and those that have no effect.
 
     Raises:
-        CommandError: A flag has no value, or one that does not fit.
+        CommandError: A flag has no value, or an invalid one.
     """
     flags = Flags()
     ignored = []
@@ -107,7 +107,7 @@ def switch_of(name: str, text: str) -> bool:
     """Return the value of a switch.
 
     Raises:
-        CommandError: It is none.
+        CommandError: The text is neither true nor false.
     """
     if text.lower() not in YES + NO:
         raise CommandError(f"-{name} is {text!r}; use true or false")
@@ -118,7 +118,7 @@ def number_of(name: str, text: str) -> float:
     """Return a number of metres or seconds.
 
     Raises:
-        CommandError: It is none.
+        CommandError: The text is not a number, or out of range.
     """
     try:
         number = float(text)

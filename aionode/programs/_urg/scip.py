@@ -12,6 +12,8 @@ from typing import Any, Final, NamedTuple, Protocol, Self
 import numpy as np
 import numpy.typing as npt
 
+from aionode.errors import escaped
+
 __all__ = ["ANSWER_SEC", "Limits", "Link", "Reply", "Scip", "Socket", "echoes_in", "time_of"]
 
 END: Final = b"\n\n"
@@ -81,7 +83,7 @@ class Socket:
             raise OSError(f"{name} does not answer; check ip_address and the network") from None
         except ValueError:  # it cannot be encoded as a name, or has a null character
             raise OSError(
-                f"{host!r} is no address and no name of a host; check ip_address"
+                f"{host!r} is neither an address nor a host name; check ip_address"
             ) from None
         except OSError as error:
             # asyncio's text is the address; the numbers of getaddrinfo are negative.
@@ -200,13 +202,13 @@ def checksum(total: int) -> bytes:
 
 
 def latin(data: bytes) -> str:
-    """Return bytes as text, whatever they are."""
+    """Return bytes as text: each byte is a character."""
     return data.decode("latin-1")
 
 
 def quoted(text: str) -> str:
-    """Return a text of a lidar without what is no text, and not too long of it."""
-    return "".join(each if each.isascii() and each.isprintable() else "?" for each in text[:64])
+    """Return the start of a lidar's text for people to read, with control characters escaped."""
+    return escaped(text[:64], one_line=True)
 
 
 class Scip:
@@ -232,7 +234,7 @@ class Scip:
         """Wait for the next reply, and return it.
 
         Raises:
-            OSError: The connection is gone, or this is no SCIP 2.0.
+            OSError: The connection is gone, or the device does not speak SCIP 2.0.
         """
         done = 0
         while (end := self.buffer.find(END, max(done - 1, 0))) < 0:
@@ -240,7 +242,7 @@ class Scip:
             if done > MOST_BYTES:
                 raise OSError("invalid response: it does not end; is this a lidar with SCIP 2.0?")
             self.buffer += await self.link.read()
-        # What is too long for a reply stays in its last line, whose checksum is wrong then.
+        # Lines beyond the limit stay joined to the last one, whose checksum is wrong then.
         lines = bytes(self.buffer[:end]).strip(b"\n").split(b"\n", MOST_LINES)
         del self.buffer[: end + len(END)]
         echo, status, *rest = [*lines, b""] if len(lines) < 2 else lines

@@ -80,7 +80,7 @@ class UrgNode(Node):
         self.declare_parameter("angle_max", 3.14)
         self.declare_parameter("skip", 0)
         self.declare_parameter("cluster", 1)
-        self.refuse_what_does_not_fit(tolerance, window)
+        self.check_initial_parameters(tolerance, window)
         self.scip: Scip | None = None
         self.is_started = False
         self.error_count = 0
@@ -106,8 +106,8 @@ class UrgNode(Node):
 
     # Parameters
 
-    def refuse_what_does_not_fit(self, tolerance: float, window: float) -> None:
-        """Check the parameters.
+    def check_initial_parameters(self, tolerance: float, window: float) -> None:
+        """Check the parameters that were given at the start.
 
         Raises:
             CommandError: One is invalid.
@@ -125,7 +125,7 @@ class UrgNode(Node):
             )
 
     def check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Return whether values fit; they have effect from the next connection on."""
+        """Return whether new values are valid; they take effect at the next connection."""
         for parameter in parameters:
             name, value = parameter.name, parameter.value
             least, greatest = RANGES.get(name, (-MOST, MOST))

@@ -124,8 +124,7 @@ class Frames:
 def frame_at(data: bytes, at: int) -> tuple[int, bytes | None]:
     """Return how many bytes are used from a position on, and the payload if they are a frame.
 
-    None are used while more are needed. After what is no frame, the search goes on with the next
-    byte.
+    0 while more bytes are needed. Where no frame begins, the search goes on with the next byte.
     """
     if data[at] != BEGIN or data[at + 1 : at + 2] == b"\0":
         return 1, None

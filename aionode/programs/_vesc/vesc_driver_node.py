@@ -9,7 +9,7 @@ from typing import Final
 
 import aionode
 from aionode import Node
-from aionode.errors import CommandError
+from aionode.errors import CommandError, escaped
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_msgs.msg import Float64, Header
 from aionode.interfaces.vesc_msgs.msg import VescImuStamped, VescStateStamped
@@ -209,7 +209,8 @@ class VescDriver(Node):
         if firmware is not None and self.firmware is None:
             self.firmware = firmware
             log = self.get_logger()
-            log.info(f"-={firmware.hardware}=- hardware paired {firmware.is_paired:d}")
+            hardware = escaped(firmware.hardware, one_line=True)
+            log.info(f"-={hardware}=- hardware paired {firmware.is_paired:d}")
             log.info(f"Connected to VESC with firmware version {firmware.major}.{firmware.minor}")
             self.release()  # it may still turn as another program has left it
         return firmware is not None
@@ -282,7 +283,7 @@ class VescDriver(Node):
         self.servo.publish(Float64(data=position))
 
     def warn_of(self, name: str, value: float) -> None:
-        """Log a command that is no number."""
+        """Log a command that is not finite."""
         self.get_logger().warning(
             f"ignored a {name} command, because it is not finite: {value}",
             throttle_duration_sec=LOG_SEC,

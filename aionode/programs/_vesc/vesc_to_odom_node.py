@@ -88,7 +88,7 @@ class VescToOdom(Node):
         )
         if not all(map(math.isfinite, (*pose, speed, angular))):
             self.get_logger().warning(
-                f"ignored a state, because its speed {msg.state.speed} is no speed of a car",
+                f"ignored a state, because a car cannot have the speed {msg.state.speed}",
                 throttle_duration_sec=5.0,
             )
             return

@@ -255,7 +255,7 @@ def pairs(text: str) -> tuple[tuple[float, float], ...]:
     """Return the pairs of angles in `ignore_array`, in radians.
 
     Raises:
-        CommandError: The text is no list of pairs.
+        CommandError: The text is not a list of pairs.
     """
     words = [word for word in text.split(",") if word.strip()]
     try:
