@@ -209,6 +209,87 @@ def test_a_folder_that_leads_back_to_itself_ends(tmp_path: Path) -> None:
     assert list(Packages(tmp_path).sources()) == ["robot"]
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("setup.py", "setup(package_dir={'': 'code'})"),
+        ("setup.py", "setup(package_dir={'pieces': 'code/pieces'})"),
+        ("setup.cfg", "[options]\npackage_dir =\n  = code"),
+        ("setup.cfg", "[metadata]\nname = x\n[options.packages.find]\nwhere = code"),
+        ("pyproject.toml", "[build-system]\n[tool.setuptools]\npackage-dir = {'' = 'code'}"),
+        ("pyproject.toml", "[project]\n[tool.setuptools.packages.find]\nwhere = ['code']"),
+        ("pyproject.toml", "[tool.poetry]\npackages = [{include = 'pieces', from = 'code'}]"),
+    ],
+)
+def test_modules_of_a_python_project_are_found_in_the_folder_that_it_names(
+    name: str, text: str, tmp_path: Path
+) -> None:
+    """A workspace's libraries need not be ROS packages."""
+    write(tmp_path / "team/one", {name: text, "code/pieces/__init__.py": "", "other.py": ""})
+
+    packages = Packages(tmp_path)
+
+    assert packages.module_root("pieces") == tmp_path / "team/one/code"
+    assert packages.module_root("other") is None
+    assert packages.sources() == {}
+
+
+def test_modules_of_other_python_projects_are_in_their_folder_or_in_src(tmp_path: Path) -> None:
+    """Those are the places of most build backends."""
+    for name, file in {"one": "flat/__init__.py", "two": "src/inner.py"}.items():
+        write(tmp_path / name, {"pyproject.toml": "[project]\nname = 'x'", file: ""})
+
+    packages = Packages(tmp_path)
+
+    assert packages.module_root("flat") == tmp_path / "one"
+    assert packages.module_root("inner") == tmp_path / "two/src"
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"pyproject.toml": "[tool.ruff]"},
+        {"pyproject.toml": "[project]\n[tool.uv]\npackage = false"},
+        {"pyproject.toml": "[tool.poetry]\npackage-mode = false"},
+        {"pyproject.toml": "not TOML"},
+        {"pyproject.toml": "x=" + "[" * 5_000},
+        {"setup.py": "x=" + "[" * 5_000},
+        {"setup.cfg": "[flake8]\nmax-line-length = 99"},
+        {"setup.py": "setup(package_dir={'': 'elsewhere'})"},
+        {"setup.py": "setup()", "COLCON_IGNORE": ""},
+        {"setup.py": "setup()", "pyvenv.cfg": ""},
+    ],
+)
+def test_a_folder_that_is_no_project_is_not_importable(
+    files: dict[str, str], tmp_path: Path
+) -> None:
+    """Settings of tools are in the same files, and a project may say that it is not installed."""
+    write(tmp_path / "one", {**files, "pieces/__init__.py": ""})
+
+    assert Packages(tmp_path).module_root("pieces") is None
+
+
+def test_ros_packages_precede_projects_and_a_project_may_contain_others(tmp_path: Path) -> None:
+    """Repositories with one environment for all have a project around the others."""
+    project = {"pyproject.toml": "[project]"}
+    write(tmp_path, {**project, "pieces/__init__.py": "", "src/alone/__init__.py": ""})
+    write(tmp_path / "src/robot", {"package.xml": "<name>robot</name>", "pieces/__init__.py": ""})
+    write(tmp_path / "src/robot/inner", {**project, "hidden/__init__.py": ""})
+    write(tmp_path / "src/tools", {**project, "tools/__init__.py": ""})
+
+    roots = {
+        name: Packages(tmp_path).module_root(name)
+        for name in ("pieces", "alone", "hidden", "tools")
+    }
+
+    assert roots == {
+        "pieces": tmp_path / "src/robot",
+        "alone": tmp_path / "src",
+        "hidden": None,
+        "tools": tmp_path / "src/tools",
+    }
+
+
 @pytest.fixture
 def bot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A package whose launch files, models and settings are installed elsewhere than they lie."""

@@ -12,9 +12,9 @@ from aionode._packages._setup_files import entry_points, scripts
 __all__ = [
     "Executable",
     "executables_in",
+    "has_module",
     "installed_executables",
     "is_python",
-    "module_root",
     "runs_in_this_python",
 ]
 
@@ -75,10 +75,12 @@ def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:
 
 def module_root(folder: Path, module: str) -> Path | None:
     """Return the folder within a package that contains a Python module, if any."""
-    for root in (folder, folder / "src"):
-        if (root / module / "__init__.py").is_file() or (root / f"{module}.py").is_file():
-            return root
-    return None
+    return next((root for root in (folder, folder / "src") if has_module(root, module)), None)
+
+
+def has_module(root: Path, module: str) -> bool:
+    """Return whether a folder contains a Python module."""
+    return (root / module / "__init__.py").is_file() or (root / f"{module}.py").is_file()
 
 
 def is_python(file: Path) -> bool:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 from aionode._packages._executables import (
     Executable,
     executables_in,
+    has_module,
     installed_executables,
-    module_root,
     runs_in_this_python,
 )
+from aionode._packages._setup_files import import_folders
 from aionode._packages._share import share_of
 from aionode._packages._standard import (
     is_window,
@@ -23,7 +25,7 @@ from aionode._packages._standard import (
     standard_plugin,
     standard_share,
 )
-from aionode._packages._workspace import packages_in
+from aionode._packages._workspace import Sources, sources_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
 __all__ = ["Packages"]
@@ -50,7 +52,7 @@ class Packages:
 
     def sources(self) -> dict[str, Path]:
         """Return the source folders of the workspace's packages, by name."""
-        return {} if self.workspace is None else packages_in(self.workspace)
+        return self._found().packages
 
     def share(self, name: str) -> Path:
         """Return the share folder of a package, with its data as installed.
@@ -177,11 +179,25 @@ class Packages:
         return () if self.workspace is None else ("--workspace", str(self.workspace))
 
     def module_root(self, module: str) -> Path | None:
-        """Return the folder to import a workspace package's Python module from."""
-        sources = self.sources()
+        """Return the folder from which a Python module of the workspace is imported.
+
+        ROS packages come first, then other Python projects, which are importable as after
+        ``pip install -e``.
+        """
+        sources, projects = self._found()
         folders = [sources[module]] if module in sources else []
         folders += [folder for name, folder in sources.items() if name != module]
-        return next(filter(None, (module_root(folder, module) for folder in folders)), None)
+        for root in chain(
+            (root for folder in folders for root in (folder, folder / "src")),
+            (root for project in projects for root in import_folders(project)),
+        ):
+            if has_module(root, module):
+                return root
+        return None
+
+    def _found(self) -> Sources:
+        """Return what is in the workspace."""
+        return Sources({}, []) if self.workspace is None else sources_in(self.workspace)
 
     def not_found(self, name: str, supplied: Sequence[str] = ()) -> PackageNotFoundError:
         """Return the error for a package that is not there, or supplied by aionode."""

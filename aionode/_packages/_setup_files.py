@@ -1,16 +1,26 @@
-"""Reads the executables of a package from its setup files, without running them."""
+"""Reads from the setup files of a package what it installs, without running them."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Final
 
 from aionode._packages._cmake import Install, installs_of, matching
 
-__all__ = ["data_files", "entry_points", "parameter_calls", "scripts"]
+__all__ = [
+    "SETUP_FILES",
+    "data_files",
+    "entry_points",
+    "import_folders",
+    "parameter_calls",
+    "scripts",
+]
+
+SETUP_FILES: Final = frozenset({"pyproject.toml", "setup.cfg", "setup.py"})
+"""The files that describe a Python project."""
 
 MAX_TEXT: Final = 100_000
 """Maximum length of texts and lists computed from a setup.py, since sums may grow without bound."""
@@ -30,16 +40,69 @@ def entry_points(folder: Path) -> dict[str, str]:
 
 def of_pyproject(folder: Path) -> dict[str, str]:
     """Return the scripts of a pyproject.toml."""
+    pairs = table(pyproject(folder), "project", "scripts").items()
+    return {name: target for name, target in pairs if isinstance(target, str)}
+
+
+def pyproject(folder: Path) -> dict[str, Any]:
+    """Return the content of a pyproject.toml; empty if there is none, or none that is readable."""
     import tomllib  # few ROS packages have such a file
 
     try:
-        content = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        return tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
         return {}
-    project = content.get("project")
-    named = project.get("scripts") if isinstance(project, dict) else None
-    pairs = named.items() if isinstance(named, dict) else ()
-    return {name: target for name, target in pairs if isinstance(target, str)}
+
+
+def table(content: Any, *keys: str) -> dict[str, Any]:
+    """Return a table within others; empty if it is not there."""
+    for key in keys:
+        content = content.get(key) if isinstance(content, dict) else None
+    return content if isinstance(content, dict) else {}
+
+
+@cache
+def import_folders(project: Path) -> tuple[Path, ...]:
+    """Return the folders from which a project's modules are imported, as by ``pip install -e``.
+
+    Those are the folders that it names to setuptools or Poetry, or else its own and its ``src``.
+    Without any, the project cannot be installed: its files have only the settings of tools, or say
+    so.
+    """
+    tools = table(pyproject(project), "tool")
+    is_installed = (
+        not {"project", "build-system"}.isdisjoint(pyproject(project))
+        or "poetry" in tools
+        or bool(section(project, "metadata") or section(project, "options"))
+        or bool(calls_of(project, "setup"))
+    )
+    if (
+        not is_installed
+        or table(tools, "uv").get("package") is False
+        or table(tools, "poetry").get("package-mode") is False
+    ):
+        return ()
+    named = [name for name in named_folders(project, tools) if isinstance(name, str)]
+    return tuple(dict.fromkeys(project / name for name in named or (".", "src")))
+
+
+def named_folders(project: Path, tools: dict[str, Any]) -> Iterator[Any]:
+    """Yield the folders that contain a project's packages, as its setup files name them."""
+    for each in listed(table(tools, "poetry").get("packages")):
+        yield table(each).get("from", ".")
+    yield from listed(table(tools, "setuptools", "packages", "find").get("where"))
+    yield dict(section(project, "options.packages.find")).get("where")
+    places = of_lines(dict(section(project, "options")).get("package_dir", "").splitlines())
+    given = table(arguments(project), "package_dir")
+    for name, place in (
+        *table(tools, "setuptools", "package-dir").items(),
+        *places,
+        *given.items(),
+    ):
+        if not name:
+            yield place
+        elif isinstance(place, str) and Path(place).name == name:
+            yield str(Path(place).parent)
 
 
 def of_setup_cfg(folder: Path) -> dict[str, str]:
@@ -142,7 +205,7 @@ def calls_of(folder: Path, function: str) -> list[dict[str, Any]]:
     """
     try:
         tree = ast.parse((folder / "setup.py").read_bytes())
-    except (OSError, SyntaxError, ValueError):
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     names: dict[str, Any] = known_functions(folder)
     for statement in statements(tree.body):

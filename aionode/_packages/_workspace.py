@@ -1,4 +1,4 @@
-"""Finds the packages of a workspace: the folders with a ``package.xml``."""
+"""Finds the packages of a workspace, which have a ``package.xml``, and other Python projects."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import re
 from collections import deque
 from functools import cache
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
-__all__ = ["MANIFEST", "MAX_FOLDERS", "package_folder", "packages_in", "workspace_of"]
+from aionode._packages._setup_files import SETUP_FILES
+
+__all__ = ["MANIFEST", "MAX_FOLDERS", "Sources", "package_folder", "sources_in", "workspace_of"]
 
 MANIFEST: Final = "package.xml"
 
@@ -19,13 +21,27 @@ MAX_DEPTH: Final = 6
 MAX_FOLDERS: Final = 10_000
 """Maximum folders that are searched: a workspace has some hundreds, a home folder any number."""
 
-IGNORED: Final = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
-"""ROS's tools ignore a folder with one of these files, and everything below it."""
+IGNORED: Final = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "pyvenv.cfg"})
+"""ROS's tools ignore a folder with one of the first three files, and everything below it; the last
+is that of a virtual environment, whose packages are installed or not.
+"""
 
 BUILT: Final = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
 """Folders that contain copies of packages, or no packages."""
 
 NAME: Final = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+
+
+class Sources(NamedTuple):
+    """What a workspace contains.
+
+    Attributes:
+        packages: The folders of ROS packages, by name.
+        projects: The folders with setup files of Python that are not within a ROS package.
+    """
+
+    packages: dict[str, Path]
+    projects: list[Path]
 
 
 def package_folder(place: Path) -> Path | None:
@@ -54,14 +70,17 @@ def workspace_of(place: Path) -> Path | None:
 
 
 @cache
-def packages_in(workspace: Path) -> dict[str, Path]:
-    """Return the package folders below a folder, or that folder itself, by package name.
+def sources_in(workspace: Path) -> Sources:
+    """Return the packages and projects below a folder, or that folder itself.
 
     As with ROS's tools, a package cannot contain another one. Of two packages with one name, the
-    one in the outermost folder counts, then the first by folder name. The result is cached for the
-    life of the process.
+    one in the outermost folder counts, then the first by folder name. A project may contain others,
+    and if the workspace is a folder ``src``, it may be that of the project around it. The result is
+    cached for the life of the process.
     """
-    packages: dict[str, Path] = {}
+    found = Sources({}, [])
+    if workspace.name == "src" and not SETUP_FILES.isdisjoint(content(workspace.parent)[0]):
+        found.projects.append(workspace.parent)
     waiting = deque([(workspace, 0)])
     for _ in range(MAX_FOLDERS):
         if not waiting:
@@ -71,10 +90,13 @@ def packages_in(workspace: Path) -> dict[str, Path]:
         if not IGNORED.isdisjoint(files):
             continue
         if MANIFEST in files:
-            packages.setdefault(package_name(folder), folder)
-        elif depth < MAX_DEPTH:
+            found.packages.setdefault(package_name(folder), folder)
+            continue
+        if not SETUP_FILES.isdisjoint(files):
+            found.projects.append(folder)
+        if depth < MAX_DEPTH:
             waiting.extend((folder / name, depth + 1) for name in folders)
-    return packages
+    return found
 
 
 def content(folder: Path) -> tuple[set[str], list[str]]:

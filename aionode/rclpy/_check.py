@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import find_spec
@@ -116,12 +117,14 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
     Raises:
         FileNotFoundError: There is no such file or folder.
     """
+    for cached in (resolved, own_folders, imports_in, source_of):
+        cached.cache_clear()  # files may have changed since an earlier check
     named = [file for path in paths for file in files_of(Path(path))]
-    uses = {file.resolve(): Use(file, is_needed=True) for file in named}
+    uses = {resolved(file): Use(file, is_needed=True) for file in named}
     reports = Reports()
     for program in list(uses.values()):
         for file, report, is_needed in reports.of_program(program.file):
-            use = uses.setdefault(file.resolve(), Use(file))
+            use = uses.setdefault(resolved(file), Use(file))
             use.is_needed |= is_needed
             if use is program:
                 use.as_program = report
@@ -174,9 +177,9 @@ class Reports:
         while needed or optional:
             is_needed = bool(needed)
             file = (needed or optional).popleft()
-            if file.resolve() in done:
+            if resolved(file) in done:
                 continue
-            done.add(file.resolve())
+            done.add(resolved(file))
             report = self.of(file, folders)
             yield file, report, is_needed
             (needed if is_needed else optional).extend(report.needed)
@@ -190,7 +193,7 @@ class Reports:
         return report if report.is_complete or not more else self._read(file, (*own, *more))
 
     def _read(self, file: Path, folders: tuple[Path, ...]) -> Report:
-        key = (file.resolve(), folders)
+        key = (resolved(file), folders)
         if key not in self._known:
             self._known[key] = report_on(file, folders)
         return self._known[key]
@@ -199,7 +202,7 @@ class Reports:
 def report_on(file: Path, folders: Sequence[Path]) -> Report:
     """Report the imports of one file; folders are those whose modules it finds."""
     try:
-        imports = imports_of(ast.parse(file.read_bytes(), str(file)))
+        imports = imports_in(file)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError) as error:
         return Report([f"  cannot be read: {error}"], is_complete=False)
     listed: dict[str, str] = {}
@@ -239,9 +242,16 @@ def files_of(path: Path) -> list[Path]:
     )
 
 
-def imports_of(tree: ast.Module) -> list[Import]:
+@cache
+def resolved(file: Path) -> Path:
+    """Return a file without links, by which it is known however it is reached."""
+    return file.resolve()
+
+
+@cache
+def imports_in(file: Path) -> list[Import]:
     """Return a program's imports, in the order of its lines."""
-    return list(dict.fromkeys(imported(tree, optional=False)))
+    return list(dict.fromkeys(imported(ast.parse(file.read_bytes(), str(file)), optional=False)))
 
 
 def is_in_python(module: str) -> bool:
@@ -403,7 +413,7 @@ def beside(wanted: Import, file: Path) -> Finding:
     """Resolve a relative import; it is listed only if it fails."""
     module = wanted.module.lstrip(".")
     level = len(wanted.module) - len(module)
-    above = file.resolve().parents
+    above = resolved(file).parents
     folder = above[min(level, len(above)) - 1]
     files = files_on(folder, module, wanted.name)
     if module and not files:
@@ -411,15 +421,17 @@ def beside(wanted: Import, file: Path) -> Finding:
     return Finding("", "", files=files)
 
 
+@cache
 def own_folders(file: Path) -> list[Path]:
     """Return the folder of a file, and the folder that contains its package."""
-    folder = file.resolve().parent
+    folder = resolved(file).parent
     top = folder
     while (top / "__init__.py").is_file():
         top = top.parent
     return [folder, top]
 
 
+@cache
 def source_of(module: str) -> str | None:
     """Return ``aionode``, ``installed``, or None for a missing module."""
     package = module.partition(".")[0]

@@ -200,6 +200,27 @@ def test_an_executable_of_a_package_runs_without_a_build(folder: Path) -> None:
     assert (done.stdout, done.stderr, done.returncode) == (f"hi ['-x'] {robot}\n", "", 3)
 
 
+def test_a_program_imports_the_python_projects_of_its_workspace(folder: Path) -> None:
+    """They need no installation, and none of their setup files is executed."""
+    for name, text in {
+        "examples/say.py": "import rclpy\nfrom words.greetings import HI\nprint(HI)\n",
+        "src/words/setup.py": "raise SystemExit('executed')\nsetup(package_dir={'': 'python'})\n",
+        "src/words/python/words/__init__.py": "",
+        "src/words/python/words/greetings.py": "from marks import MARK\nHI = 'hi' + MARK\n",
+        "src/marks/pyproject.toml": "[project]\nname = 'marks'\n",
+        "src/marks/src/marks/__init__.py": "MARK = '!'\n",
+        ".git/HEAD": "",
+    }.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+    checked = run(folder, "--check", "examples/say.py")
+    done = run(folder, "run", "examples/say.py", module="aionode")
+
+    assert (done.stdout, done.stderr, done.returncode) == ("hi!\n", "", 0)
+    assert checked.returncode == 0, checked.stdout
+
+
 def test_a_program_that_only_defines_main_does_not_end_as_if_it_had_run(folder: Path) -> None:
     """It is the module of an executable, which calls the function."""
     (folder / "mover.py").write_text("import rclpy\n\n\ndef main():\n    pass\n")
