@@ -56,17 +56,26 @@ def description(kind: FieldType) -> FieldDesc:
 
 
 @cache
-def store() -> Typestore:
-    """Return what rosbags knows of all classes: it takes more than a second to learn them."""
-    types = get_typestore(Stores.ROS2_JAZZY)
-    new = CLASSES.keys() - types.fielddefs
-    types.register({name: ([], definition(CLASSES[name])) for name in new})
+def bundled_types() -> Typestore:
+    """Return the types that rosbags brings along."""
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+@cache
+def store(cls: type[Message]) -> Typestore:
+    """Return a store that knows a class: rosbags takes several seconds to learn all of them."""
+    types = bundled_types()
+    for field in fields(cls):
+        if field.type.nested is not None:
+            store(field.type.nested)
+    if type_name(cls) not in types.fielddefs:
+        types.register({type_name(cls): ([], definition(cls))})
     return types
 
 
 def to_rosbags(cls: type[Message], message: Any) -> Any:
     """Return the message as rosbags holds it."""
-    made = store().types[type_name(cls)]
+    made = store(cls).types[type_name(cls)]
     values = [to_value(field.type, getattr(message, field.name)) for field in fields(cls)]
     return made(*(values or [0]))
 
@@ -138,11 +147,11 @@ def check_both_ways(message: Message) -> None:
     cls = type(message)
     name = type_name(cls)
     encoded = cdr.encode(message)
-    theirs = store().deserialize_cdr(encoded, name)
+    theirs = store(cls).deserialize_cdr(encoded, name)
 
     assert same(cls, message, theirs)
-    assert bytes(store().serialize_cdr(theirs, name)) == encoded
-    assert bytes(store().serialize_cdr(to_rosbags(cls, message), name)) == encoded
+    assert bytes(store(cls).serialize_cdr(theirs, name)) == encoded
+    assert bytes(store(cls).serialize_cdr(to_rosbags(cls, message), name)) == encoded
 
 
 @many
@@ -153,7 +162,7 @@ def test_big_endian_data_is_read_into_native_values(
     """Current systems do not send it, but the format allows it."""
     message = data.draw(messages(cls))
     theirs = to_rosbags(cls, message)
-    encoded = bytes(store().serialize_cdr(theirs, type_name(cls), little_endian=False))
+    encoded = bytes(store(cls).serialize_cdr(theirs, type_name(cls), little_endian=False))
 
     assert cdr.decode(cls, encoded) == message
     assert cdr.decode(cls, memoryview(encoded)) == message
