@@ -63,6 +63,11 @@ share_bytecode()
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 assert "numpy" not in sys.modules, "it would have its threads already"
 
+# Each HTTP client would load the certificates of the system, which takes it 30 ms; tests of TLS
+# have certificates of their own.
+os.environ.pop("SSL_CERT_FILE", None)
+os.environ["SSL_CERT_DIR"] = os.devnull
+
 
 PROCESSES = (
     "tests/end_to_end/",

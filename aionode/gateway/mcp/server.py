@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
@@ -11,6 +10,7 @@ import mcp_types as types
 from mcp.server.lowlevel import NotificationOptions, Server
 from mcp.shared.exceptions import MCPError
 
+from aionode import __version__
 from aionode._process.concurrency import to_the_end
 from aionode.errors import AionodeError, RefusedError, ToolError
 from aionode.gateway.mcp.answers import failure
@@ -94,7 +94,7 @@ class McpServer:
         self.server = RobotServer(
             "aionode",
             self.instructions,
-            version=importlib.metadata.version("aionode"),
+            version=__version__,
             title="Robot",
             on_list_tools=self._list_tools,
             on_call_tool=self._call_tool,
