@@ -124,6 +124,19 @@ start and end of a loop. Zenoh has threads of its own, which wake a loop in the 
 everything that arrives. On uvloop, tests elsewhere have the mark `second_loop`.
 """
 
+TRANSPORTS = (
+    "tests/end_to_end/",
+    "tests/engine/transport/link/",
+    "tests/engine/transport/rcl/",
+    "tests/engine/transport/test_contract.py",
+    "tests/engine/transport/zenoh/test_services.py",
+    "tests/engine/transport/zenoh/test_topics.py",
+)
+"""Those of `BOTH_LOOPS` that have the mark `slow` on uvloop: `make test` leaves these variants out.
+
+What they need of a loop, such as being woken from threads, others of `BOTH_LOOPS` test directly.
+"""
+
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
 def pytest_cmdline_main(config: pytest.Config) -> None:
@@ -201,6 +214,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                     item.add_marker("stress")
                 elif not item.nodeid.startswith(BOTH_LOOPS):
                     item.add_marker("second_loop")
+                elif item.nodeid.startswith(TRANSPORTS):
+                    item.add_marker("slow")
     if hasattr(config, "workerinput"):  # of pytest-xdist
         items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
 
@@ -234,6 +249,8 @@ def pytest_asyncio_loop_factories(
     expression = config.option.markexpr
     if item.get_closest_marker("one_loop"):
         left_out = "uvloop" if "not stress" in expression else ""
+    elif item.nodeid.startswith(TRANSPORTS) and "not slow" in expression:
+        left_out = "uvloop"
     elif item.nodeid.startswith(BOTH_LOOPS):
         left_out = ""
     elif "not second_loop" in expression:
