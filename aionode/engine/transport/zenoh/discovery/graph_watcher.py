@@ -120,6 +120,7 @@ class Watcher:
         self.newest_ns = 0
         self._state = state
         self._tokens = f"{PREFIX}/{state.domain_id}/**"
+        self._node_tokens = f"{PREFIX}/{state.domain_id}/*/*/*/NN/**"
         self._check: Check | None = None
         self._missing: set[str] = set()
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
@@ -156,10 +157,11 @@ class Watcher:
         """
         self.newest_ns = perf_ns()  # from now on the first one is waited for as well
         answer = Answer(answered)
-        # The subscriber gets the same tokens, and a reply may be older than an undeclaration
-        # received since: only the end of the replies matters, and whether one failed.
+        # A peer answers the subscriber first, over the same connection: only the end of the replies
+        # matters, and whether one failed. A reply for each endpoint would cost every peer as much
+        # as the subscriber does.
         session.liveliness().get(
-            self._tokens,
+            self._node_tokens,
             direct(answer.take, lambda: self._queue.put(answer)),
             timeout=ANSWER_S,
         )
