@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -24,11 +25,13 @@ STOPPED: Final = {b"T", b"t"}
 """States of processes that a signal, or a debugger, has stopped; see proc(5)."""
 
 
+@cache
 def pid_space() -> int | None:
     """Return 16 bits that identify the set of processes to which this process's pids apply.
 
     Containers and other machines have pids of their own. None if the system does not say, or shows
-    the processes outside this one's container.
+    the processes outside this one's container. It is the same for the life of a process, and asked
+    for each peer that comes or goes.
     """
     with suppress(OSError):
         if OWN_PROCESS.readlink().name != str(os.getpid()):
@@ -36,6 +39,10 @@ def pid_space() -> int | None:
         namespace = BOOT_ID.read_bytes() + str(PID_NAMESPACE.stat().st_ino).encode()
         return xxhash.xxh3_64_intdigest(namespace) & 0xFFFF
     return None
+
+
+if hasattr(os, "register_at_fork"):  # a child may be the first process of a container
+    os.register_at_fork(after_in_child=pid_space.cache_clear)
 
 
 def is_stopped(pid: int) -> bool:

@@ -22,6 +22,14 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="ne
 
 
 @pytest.fixture
+def asked_again() -> Iterator[None]:
+    """Ask the system again in this test, and after it."""
+    pid_space.cache_clear()
+    yield
+    pid_space.cache_clear()
+
+
+@pytest.fixture
 def process() -> Iterator[subprocess.Popen[bytes]]:
     """Return a process that waits."""
     with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
@@ -117,11 +125,13 @@ def test_a_watched_process_that_has_ended_is_not_stopped(
         assert not watched.is_stopped()
 
 
+@pytest.mark.usefixtures("asked_again")
 def test_pids_of_another_namespace_or_boot_are_told_apart(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Process 7 of a container is not process 7 of the host."""
     here = pid_space()
+    pid_space.cache_clear()
     other = tmp_path / "boot_id"
     other.write_text("another boot")
     monkeypatch.setattr(stopped, "BOOT_ID", other)
@@ -130,6 +140,7 @@ def test_pids_of_another_namespace_or_boot_are_told_apart(
     assert pid_space() != here
 
 
+@pytest.mark.usefixtures("asked_again")
 def test_where_the_system_tells_nothing_pids_mean_nothing(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -139,6 +150,27 @@ def test_where_the_system_tells_nothing_pids_mean_nothing(
     assert pid_space() is None
 
 
+def test_a_process_asks_the_system_once_for_its_pid_space(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every peer that came or went cost each process of the domain three more system calls."""
+    here = pid_space()
+    monkeypatch.setattr(stopped, "OWN_PROCESS", Path("/nowhere"))
+
+    assert pid_space() == here
+
+
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded")
+def test_a_forked_process_asks_for_its_own_pid_space(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The child may be the first process of a container."""
+    pid_space()
+    monkeypatch.setattr(stopped, "OWN_PROCESS", Path("/nowhere"))
+    child = os.fork()
+    if not child:
+        os._exit(pid_space() is not None)
+
+    assert os.waitpid(child, 0)[1] == 0
+
+
+@pytest.mark.usefixtures("asked_again")
 def test_where_proc_has_the_pids_of_others_pids_mean_nothing(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
