@@ -5,10 +5,87 @@ Generated from its definitions by `aionode interface generate`, which keeps the 
 
 from typing import ClassVar
 
-from aionode.interfaces.geometry_msgs.msg import Vector3
-from aionode.message import DEFAULT, Message, ServiceType, float32, float64, int8
+from aionode.interfaces.geometry_msgs.msg import PoseStamped, Twist, Vector3, Wrench
+from aionode.interfaces.ur_msgs.msg import Analog
+from aionode.message import (
+    DEFAULT,
+    Array,
+    Message,
+    ServiceType,
+    float32,
+    float64,
+    int8,
+    uint8,
+    uint32,
+)
 
-__all__ = ["SetIO", "SetPayload", "SetSpeedSliderFraction"]
+__all__ = [
+    "GetRobotSoftwareVersion",
+    "SetAnalogOutput",
+    "SetForceMode",
+    "SetIO",
+    "SetPayload",
+    "SetSpeedSliderFraction",
+]
+
+
+class GetRobotSoftwareVersion(ServiceType, typename="ur_msgs/srv/GetRobotSoftwareVersion"):
+    """GetRobotSoftwareVersion, as Universal Robots defines it."""
+
+    class Request(Message):
+        """The request of GetRobotSoftwareVersion."""
+
+    class Response(Message):
+        """The response of GetRobotSoftwareVersion."""
+
+        major: uint32 = 0
+        minor: uint32 = 0
+        bugfix: uint32 = 0
+        build: uint32 = 0
+
+
+class SetAnalogOutput(ServiceType, typename="ur_msgs/srv/SetAnalogOutput"):
+    """SetAnalogOutput, as Universal Robots defines it."""
+
+    class Request(Message):
+        """The request of SetAnalogOutput."""
+
+        data: Analog = DEFAULT
+
+    class Response(Message):
+        """The response of SetAnalogOutput."""
+
+        success: bool = False
+
+
+class SetForceMode(ServiceType, typename="ur_msgs/srv/SetForceMode"):
+    """SetForceMode, as Universal Robots defines it."""
+
+    class Request(Message):
+        """The request of SetForceMode."""
+
+        TCP_TO_ORIGIN: ClassVar[uint8] = 1
+        NO_TRANSFORM: ClassVar[uint8] = 2
+        TCP_VELOCITY_TO_X_Y: ClassVar[uint8] = 3
+
+        task_frame: PoseStamped = DEFAULT
+        selection_vector_x: bool = False
+        selection_vector_y: bool = False
+        selection_vector_z: bool = False
+        selection_vector_rx: bool = False
+        selection_vector_ry: bool = False
+        selection_vector_rz: bool = False
+        wrench: Wrench = DEFAULT
+        type: uint8 = 2
+        speed_limits: Twist = DEFAULT
+        deviation_limits: Array[float32, 6] = (0.01, 0.01, 0.01, 0.01, 0.01, 0.01)
+        damping_factor: float32 = 0.025
+        gain_scaling: float32 = 0.5
+
+    class Response(Message):
+        """The response of SetForceMode."""
+
+        success: bool = False
 
 
 class SetIO(ServiceType, typename="ur_msgs/srv/SetIO"):
