@@ -30,7 +30,7 @@ async def test_it_serves_until_it_is_stopped(
     async with running(serving(None, False, "127.0.0.1", 0)(tool, screen.output)):
         await until(lambda: "listening on 127.0.0.1:" in screen.text)
         port = screen.text.rpartition(":")[2].strip()
-        async with httpx.AsyncClient(trust_env=False) as client:
+        async with httpx.AsyncClient(trust_env=False, timeout=50) as client:
             answer = await client.get(f"http://127.0.0.1:{port}/nothing")
     assert answer.status_code == 404
 

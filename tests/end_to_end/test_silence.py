@@ -132,15 +132,15 @@ async def test_a_mover_that_is_frozen_stops_the_wheels(wheels: Node) -> None:
 
 async def test_a_frozen_mover_beside_another_is_no_silence(wheels: Node, route: str) -> None:
     """The topic is not silent; when the other one falls silent too, the wheels stop."""
-    driven = Driven(wheels, 0.5)
+    driven = Driven(wheels, 2.0)
     async with quiet_node("other", Context(link=route == "link")) as other:
         publisher = other.create_publisher(Int64, TOPIC, 10)
         with mover() as process:
             await driven.moves()
             process.send(signal.SIGSTOP)
-            for _ in range(40):
+            for _ in range(50):
                 publisher.publish(Int64(data=now_ns()))
-                await MACHINE.sleep(0.05)
+                await MACHINE.sleep(0.06)
             assert driven.stops == []
             await driven.until(lambda: bool(driven.stops))
             process.send(signal.SIGCONT)

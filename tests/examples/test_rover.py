@@ -294,7 +294,7 @@ def test_the_rover_has_a_page() -> None:
     """One command, and a browser; Ctrl-C ends all of it."""
     with started() as program:
         address = line_with(r"Open (http://127\.0\.0\.1:\d+)", program)[1]
-        page = httpx.get(address)
+        page = httpx.get(address, timeout=50)
         status = ended(program)
 
     assert (page.status_code, status) == (200, 0)

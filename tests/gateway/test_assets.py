@@ -65,7 +65,7 @@ async def gateway(node: Node, share: Path) -> AsyncIterator[Gateway]:
 @pytest.fixture
 async def web(gateway: Gateway) -> AsyncIterator[httpx.AsyncClient]:
     """An HTTP client of the gateway."""
-    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client:
+    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}", timeout=50) as client:
         yield client
 
 
@@ -179,7 +179,7 @@ async def test_a_gateway_without_a_policy_serves_the_packages_it_is_given(
     async with (
         Gateway(node, port=0) as plain,
         Gateway(node, Policy.default(assets=["rover"]), port=0) as given,
-        httpx.AsyncClient() as client,
+        httpx.AsyncClient(timeout=50) as client,
     ):
         path = "assets/rover/config.yaml"
         refused = await client.get(f"http://127.0.0.1:{plain.port}/{path}")

@@ -185,7 +185,7 @@ async def test_a_client_is_who_its_token_says() -> None:
         headers = {"Authorization": "Bearer of-another"}
         async with AsyncExitStack() as stack:
             http = await stack.enter_async_context(
-                httpx2.AsyncClient(headers=headers, trust_env=False)
+                httpx2.AsyncClient(headers=headers, trust_env=False, timeout=50)
             )
             transport: Any = streamable_http_client(bench.target(), http_client=http)
             client = await stack.enter_async_context(mcp.Client(transport))
@@ -199,7 +199,7 @@ async def test_a_wrong_token_is_refused_at_the_door() -> None:
     """As in all protocols."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
-        httpx.AsyncClient(trust_env=False) as http,
+        httpx.AsyncClient(trust_env=False, timeout=50) as http,
     ):
         headers = {"Authorization": "Bearer wrong"}
         answer = await http.post(bench.target(), headers=headers, json={})
@@ -211,7 +211,7 @@ async def test_a_page_of_another_origin_is_refused() -> None:
     """A browser on the robot's machine must not give pages access."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
-        httpx.AsyncClient(trust_env=False) as http,
+        httpx.AsyncClient(trust_env=False, timeout=50) as http,
     ):
         headers = {"Origin": "http://evil.example"}
         answer = await http.post(bench.target(), headers=headers, json={})
@@ -223,7 +223,7 @@ async def test_a_session_belongs_to_who_has_begun_it() -> None:
     """Knowing its number does not let anybody else use it."""
     async with (
         bench_of(POLICY, over_http=True) as bench,
-        httpx.AsyncClient(trust_env=False) as http,
+        httpx.AsyncClient(trust_env=False, timeout=50) as http,
     ):
         accept = {"accept": "application/json, text/event-stream"}
         hello = {
@@ -271,7 +271,10 @@ async def test_a_name_removed_from_the_policy_is_refused(era: str) -> None:
 
 async def test_a_gateway_without_assistants_has_no_path_for_them(node: Any) -> None:
     """It has to be requested."""
-    async with Gateway(node, port=0) as gateway, httpx.AsyncClient(trust_env=False) as http:
+    async with (
+        Gateway(node, port=0) as gateway,
+        httpx.AsyncClient(trust_env=False, timeout=50) as http,
+    ):
         answer = await http.post(f"http://127.0.0.1:{gateway.port}/mcp", json={})
         with pytest.raises(RuntimeError, match="mcp=True"):
             gateway.tell("hello")

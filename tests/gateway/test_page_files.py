@@ -26,7 +26,7 @@ async def web(node: Node) -> AsyncIterator[httpx.AsyncClient]:
     """An HTTP client of a gateway."""
     async with (
         Gateway(node, port=0) as gateway,
-        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}", timeout=50) as client,
     ):
         yield client
 

@@ -96,7 +96,7 @@ async def websocket(
 async def get(gateway: Gateway, context: ssl.SSLContext, token: str = "") -> httpx.Response:
     """Return the topics that a client sees."""
     headers = {"authorization": f"Bearer {token}"} if token else None
-    async with httpx.AsyncClient(trust_env=False, verify=context) as client:
+    async with httpx.AsyncClient(trust_env=False, verify=context, timeout=50) as client:
         return await client.get(f"https://127.0.0.1:{gateway.port}/topics", headers=headers)
 
 
