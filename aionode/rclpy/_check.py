@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
-from aionode._packages import around, parameter_modules
+from aionode._packages import Packages, around, parameter_modules
 from aionode.idl.search import has_interfaces, module_name, names_in
 from aionode.rclpy._finder import FINDER, KINDS, SUPPLIED, exists, gives_way
 from aionode.rclpy.missing import advice
@@ -94,12 +94,14 @@ class Report:
     Attributes:
         lines: A line per module.
         is_complete: Whether the file finds what it needs.
+        missing: The first part of each module that is missing.
         needed: The user's files that it imports.
         optional: The user's files that it can do without.
     """
 
     lines: list[str]
     is_complete: bool = True
+    missing: set[str] = field(default_factory=set)
     needed: list[Path] = field(default_factory=list)
     optional: list[Path] = field(default_factory=list)
 
@@ -117,7 +119,7 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
     Raises:
         FileNotFoundError: There is no such file or folder.
     """
-    for cached in (resolved, own_folders, imports_in, source_of):
+    for cached in (resolved, own_folders, imports_in, source_of, root_of, reason):
         cached.cache_clear()  # files may have changed since an earlier check
     named = [file for path in paths for file in files_of(Path(path))]
     uses = {resolved(file): Use(file, is_needed=True) for file in named}
@@ -189,8 +191,15 @@ class Reports:
         """Return the imports of a file for a program that has these folders on its path."""
         own = own_folders(file)
         report = self._read(file, tuple(own))
-        more = [folder for folder in folders if folder not in own]
-        return report if report.is_complete or not more else self._read(file, (*own, *more))
+        if report.is_complete:
+            return report
+        others = (folder for folder in folders if folder not in own)
+        more = [
+            folder
+            for folder in others
+            if any(PathFinder.find_spec(name, [str(folder)]) for name in report.missing)
+        ]
+        return self._read(file, (*own, *more)) if more else report
 
     def _read(self, file: Path, folders: tuple[Path, ...]) -> Report:
         key = (resolved(file), folders)
@@ -219,6 +228,7 @@ def report_on(file: Path, folders: Sequence[Path]) -> Report:
             listed[finding.shown] = finding.where
             continue
         missing.add(wanted)
+        report.missing.add(wanted.module.partition(".")[0])
         listed[finding.shown] = f"missing{', optional' * optional}: {finding.where}"
         report.is_complete = report.is_complete and optional
     listed.pop("", None)
@@ -381,8 +391,8 @@ def find(wanted: Import, file: Path, folders: Sequence[Path]) -> Finding:
         if files := files_on(folder, module, name):
             return Finding(module, "beside the program", files=files)
     package, _, inside = module.partition(".")
-    packages = around(file)
-    root = packages.module_root(package)
+    packages = around(file.parent)
+    root = root_of(packages, package)
     place = packages.sources().get(package)
     if root is not None and (files := files_on(root, module, name)):
         return Finding(module, f"in {root}", files=files)
@@ -392,9 +402,21 @@ def find(wanted: Import, file: Path, folders: Sequence[Path]) -> Finding:
             return Finding(module, f"in {place}")
     if place is not None and inside in parameter_modules(place, package):
         return Finding(module, f"of the parameters in {place}")
+    return Finding(module, reason(module), is_there=False)
+
+
+@cache
+def root_of(packages: Packages, module: str) -> Path | None:
+    """Return the folder from which a module of a workspace is imported."""
+    return packages.module_root(module)
+
+
+@cache
+def reason(module: str) -> str:
+    """Return why a module is missing, and what to do."""
+    package = module.partition(".")[0]
     supplied = SUPPLIED | ({package} if has_interfaces(package) else set())
-    reason = advice(module, supplied) or "no module of this name is installed"
-    return Finding(module, reason, is_there=False)
+    return advice(module, supplied) or "no module of this name is installed"
 
 
 def in_aionode(module: str, name: str) -> Finding:
