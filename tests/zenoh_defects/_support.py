@@ -157,8 +157,11 @@ def suppressed(call: Callable[[], object]) -> Callable[[], None]:
 def sockets() -> Iterator[tuple[int, int, socket.socket]]:
     """Yield the TCP connections of this process: local port, remote port, and a duplicate."""
     for path in Path("/proc/self/fd").iterdir():
-        with suppress(OSError), socket.socket(fileno=os.dup(int(path.name))) as one:
-            yield one.getsockname()[1], one.getpeername()[1], one
+        with suppress(OSError):
+            if not str(path.readlink()).startswith("socket:"):
+                continue
+            with socket.socket(fileno=os.dup(int(path.name))) as one:
+                yield one.getsockname()[1], one.getpeername()[1], one
 
 
 def is_stuck(port: int) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aionode.engine.context import Context
-from aionode.engine.transport.network import network_from
+from aionode.engine.transport.network import DiscoveryRange, Network, network_from
 from aionode.engine.transport.zenoh import _defects
 from aionode.engine.transport.zenoh._defects._switch import defects, is_mended
 from aionode.engine.transport.zenoh.session.settings import router_settings, session_settings
@@ -56,6 +56,22 @@ def test_workarounds_are_disabled_by_the_environment(monkeypatch: pytest.MonkeyP
     assert is_mended("closing")
     assert key not in session_settings(network, ())
     assert {key, admin}.isdisjoint(router_settings())
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["tcp/127.0.0.1:7447", "tls/robot:7448", "tcp/10.0.0.1:7447#iface=eth0"]
+)
+def test_no_endpoint_equals_the_address_of_a_link(endpoint: str) -> None:
+    """Zenoh would redial such an endpoint before it has closed the lost transport."""
+    (session,) = session_settings(Network(discovery_range=DiscoveryRange.SYSTEM_DEFAULT), ())[
+        "connect/endpoints"
+    ]
+    (dialled,) = router_settings(connect=[endpoint])["connect/endpoints"]
+
+    assert "#" in session
+    assert "#" in dialled
+    assert dialled.partition("#")[0] == endpoint.partition("#")[0]
+    assert dialled.count("#") == 1
 
 
 async def test_a_name_of_no_defect_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

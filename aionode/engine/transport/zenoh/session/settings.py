@@ -21,6 +21,7 @@ from aionode.engine.transport.network import ROUTER_PORT, DiscoveryRange
 from aionode.engine.transport.zenoh._defects import (
     admin_space,
     blocked_sends,
+    early_redial,
     half_open,
     shared_memory,
 )
@@ -144,10 +145,9 @@ def session_settings(
         # A lost race for the port is not an error. Retrying would make close() wait for the port.
         "listen/timeout_ms": 0,
         "listen/exit_on_failure": False,
-        "connect/endpoints": [
-            *(f"tcp/{LOOPBACK}:{p}" for p in dial),
-            *network.near_peers,
-        ],
+        "connect/endpoints": early_redial.dialled(
+            (*(f"tcp/{LOOPBACK}:{p}" for p in dial), *network.near_peers), RETRY["period_init_ms"]
+        ),
         "connect/timeout_ms": -1,
         "connect/exit_on_failure": False,
         "connect/retry": RETRY,
@@ -192,7 +192,7 @@ def router_settings(
     return {
         "mode": "router",
         "listen/endpoints": list(listen),
-        "connect/endpoints": list(connect),
+        "connect/endpoints": early_redial.dialled(connect, RETRY["period_init_ms"]),
         "connect/timeout_ms": -1,
         "connect/exit_on_failure": False,
         "connect/retry": {**RETRY, "period_max_ms": 1000},
