@@ -1,4 +1,4 @@
-"""A lost connection is dialled again before its transport is gone, and both may be lost for good."""
+"""A lost connection is dialled again before its transport is closed, and may be lost for good."""
 
 from __future__ import annotations
 
