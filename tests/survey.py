@@ -6,9 +6,10 @@ in the folder as ``owner+name`` is cloned from GitHub. Each clone is a workspace
 the launch files, as they are and with ``--skip-missing``; nothing is started. Tests of packages are
 left out, since they need the tools of a whole ROS 2.
 
-A module that is not there counts as one of PyPI if `tests/survey_modules.txt` has its name. With
-``--python``, the aionode of another Python is asked, such as an older one. The exit status is 1 if
-a launch file ends in a traceback, or never.
+It has to run where aionode is installed with all its extras, of which ``desktop`` counts most: what
+they bring is there only if it is installed. Any other module that is not there counts as one of
+PyPI if `tests/survey_modules.txt` has its name. With ``--python``, the aionode of another Python is
+asked, such as an older one. The exit status is 1 if a launch file ends in a traceback, or never.
 """
 
 from __future__ import annotations
