@@ -14,6 +14,7 @@ import rosbag2_py
 from aionode import Context, Node, bag
 from aionode.clock import Time
 from aionode.interfaces.std_msgs.msg import String
+from aionode.logging import LoggingSeverity, get_logger_level
 from rosbag2_py._live import LiveThread
 from tests.support.peers import isolated_environment, quiet_node
 from tests.support.waiting import until
@@ -88,6 +89,21 @@ async def test_the_older_form_records_until_it_is_cancelled(node: Node, tmp_path
     await asyncio.to_thread(thread.join)
     with bag.open(tmp_path / "run") as run:
         assert run.counts["/words"] == 1
+
+
+async def test_the_level_of_a_logger_is_that_of_before_when_a_recorder_has_ended(
+    alone: None, tmp_path: Path
+) -> None:
+    """A level belongs to the process, where later recorders have the same logger."""
+    before = get_logger_level("rosbag2_recorder")
+    record = rosbag2_py.RecordOptions(all_topics=True)
+    recorder = rosbag2_py.Recorder(options_of(tmp_path / "run"), record, "error")
+    await asyncio.to_thread(recorder.start_spin)
+    during = get_logger_level("rosbag2_recorder")
+    await asyncio.to_thread(recorder.stop_spin)
+
+    assert (before, during) == (LoggingSeverity.UNSET, LoggingSeverity.ERROR)
+    assert get_logger_level("rosbag2_recorder") is LoggingSeverity.UNSET
 
 
 async def test_a_player_plays_in_its_thread(node: Node, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from aionode import Context, bag
 from aionode.bag.yaml_files import PRESETS, static_topics_in
 from aionode.clock import Duration, Time
 from aionode.errors import AionodeError
-from aionode.logging import LoggingSeverity
+from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
@@ -184,6 +184,7 @@ class LiveThread:
     Args:
         kind: Its class.
         make: Returns it, for a context.
+        level: The level of its node's logger meanwhile.
 
     Raises:
         RuntimeError: it cannot start: the folder of a bag exists, or there is no bag.
@@ -191,9 +192,11 @@ class LiveThread:
 
     running: ClassVar[set[LiveThread]] = set()
 
-    def __init__(self, kind: type[Any], make: Callable[[Context], Any]) -> None:
+    def __init__(
+        self, kind: type[Any], make: Callable[[Context], Any], level: LoggingSeverity
+    ) -> None:
         self.kind = kind
-        self._make = make
+        self._make, self._level = make, level
         self._entered: concurrent.futures.Future[None] = concurrent.futures.Future()
         self._ended: concurrent.futures.Future[None] = concurrent.futures.Future()
         self.entity: Any = None
@@ -219,9 +222,17 @@ class LiveThread:
     async def _run(self) -> None:
         self._loop = asyncio.get_running_loop()
         self._stopping = asyncio.Event()
-        async with Context() as context, self._make(context) as self.entity:
-            self._entered.set_result(None)
-            await self._stopping.wait()
+        name, level_before = "", LoggingSeverity.UNSET
+        try:
+            async with Context() as context, self._make(context) as self.entity:
+                name = self.entity.node.get_logger().name
+                level_before = get_logger_level(name)
+                set_logger_level(name, self._level)
+                self._entered.set_result(None)
+                await self._stopping.wait()
+        finally:
+            if name:  # the level is the process's: the next node of this name would have it, too
+                set_logger_level(name, level_before)
 
     def call(self, work: Callable[[], Any]) -> Any:
         """Call a function in the loop's thread, and return its result, awaiting a coroutine.
@@ -317,8 +328,7 @@ class Live:
         if self._storage is None or self._options is None:
             raise RuntimeError(f"{type(self).__name__}: {NOT_CONFIGURED}")
         if self._thread is None:
-            self._thread = LiveThread(self._kind, self._make)
-            self._thread.entity.node.get_logger().set_level(level_of(self._level))
+            self._thread = LiveThread(self._kind, self._make, level_of(self._level))
 
     def stop_spin(self) -> None:
         """End the thread of the node, and wait until everything is written."""
