@@ -264,10 +264,14 @@ def pytest_asyncio_loop_factories(
 
 @pytest.fixture(autouse=True)
 def own_imports() -> Iterator[None]:
-    """Keep other tests from importing what `install` finds for this one, and from its workspace."""
+    """Keep other tests from importing what `install` finds for this one, and from its workspace.
+
+    A command that runs a program in this process gives it its folder and its arguments.
+    """
     before, newest = list(sys.meta_path), next(reversed(sys.modules))
+    path, arguments = list(sys.path), list(sys.argv)
     yield
-    sys.meta_path[:] = before
+    sys.meta_path[:], sys.path[:], sys.argv[:] = before, path, arguments
     if loaded := sys.modules.get("aionode._packages._here"):
         loaded.GIVEN.clear()
     if loaded := sys.modules.get("aionode.idl.named"):
