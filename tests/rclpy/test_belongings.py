@@ -24,6 +24,7 @@ PATIENCE_S = 80.0
 ENDS = re.findall(r"^@end\ndef (\w+)", PROGRAM.read_text(encoding="utf-8"), re.MULTILINE)
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.timeout(100),
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux has /proc"),
 ]

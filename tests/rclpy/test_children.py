@@ -76,12 +76,13 @@ def output_of(method: str, *options: str, cwd: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("method", ["spawn", "forkserver"])
+@pytest.mark.parametrize("method", ["spawn", pytest.param("forkserver", marks=pytest.mark.slow)])
 def test_a_process_imports_what_the_program_imports(folder: Path, method: str) -> None:
     """So does a process that this one starts: with fork, none of them could use a context."""
     assert output_of(method, cwd=folder / "src/robot") == ANSWER * 2
 
 
+@pytest.mark.slow
 def test_a_process_imports_the_messages_that_the_program_was_given(folder: Path) -> None:
     """The program is in no workspace, so they are in a folder of its command line."""
     shutil.move(folder / "src/robot/ours.py", folder)

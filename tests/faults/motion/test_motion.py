@@ -63,6 +63,7 @@ def test_motion_ends_with_whoever_asked_for_it(motion: Motion) -> None:
     assert motion.broken(outcome_of(motion), SPARE_S) == []
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("motion", SWITCHED_OFF.values(), ids=SWITCHED_OFF)
 def test_a_case_breaks_without_its_mechanism(motion: Motion) -> None:
