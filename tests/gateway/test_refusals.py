@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import logging
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,10 +30,6 @@ from tests.support.rosbridge import rosbridge_client
 from tests.support.waiting import until
 
 FOLDER = Path(str(_package.__file__)).parent
-SOURCES = {
-    str(path.relative_to(FOLDER)): ast.parse(path.read_text())
-    for path in sorted(FOLDER.rglob("*.py"))
-}
 
 ERRORS = {"AionodeError", "RefusedError", "MessageError", "ServiceError", "TimeoutError", "kinds"}
 """The exceptions that concern a client, where caught."""
@@ -68,6 +65,15 @@ UNTOLD = {
     "mcp/reading.py:log": "the same as `read`",
 }
 """Functions that catch such an error silently, with the reason."""
+
+
+@cache
+def sources() -> dict[str, ast.Module]:
+    """Return the syntax of each module, by its path."""
+    return {
+        str(path.relative_to(FOLDER)): ast.parse(path.read_text())
+        for path in sorted(FOLDER.rglob("*.py"))
+    }
 
 
 def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
@@ -191,7 +197,7 @@ async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lin
 def test_each_kind_of_refusal_happens_somewhere() -> None:
     """A kind that nothing records would be dead."""
     codes, names = set(), set()
-    for name, tree in SOURCES.items():
+    for name, tree in sources().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.Attribute):
                 names.add(node.attr)
@@ -213,7 +219,7 @@ def test_nothing_that_fails_for_a_client_is_left_out_without_a_word() -> None:
     """Each place that catches such an error raises another one, or counts and logs it."""
     silent = {
         f"{name}:{function.name}"
-        for name, tree in SOURCES.items()
+        for name, tree in sources().items()
         for function in ast.walk(tree)
         if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
         for node in own_nodes(function)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import asyncio
 import logging
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,11 +19,6 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 
 FOLDER = Path(str(transport.__file__)).parent
-SOURCES = {
-    str(path.relative_to(FOLDER)): ast.parse(path.read_text())
-    for path in sorted(FOLDER.rglob("*.py"))
-    if "_defects" not in path.parts
-}
 
 OTHER_WARNINGS = {
     "rcl/_services.py": "our requests: the middleware never takes one of that size",
@@ -37,6 +33,16 @@ OTHER_WARNINGS = {
 
 UNREADABLE = {"DecodeError", "FrameError"}
 TOLD_BY = {"note", "note_malformed", "_reject", "refuse", "reject", "close", "fail"}
+
+
+@cache
+def sources() -> dict[str, ast.Module]:
+    """Return the syntax of each module, by its path."""
+    return {
+        str(path.relative_to(FOLDER)): ast.parse(path.read_text())
+        for path in sorted(FOLDER.rglob("*.py"))
+        if "_defects" not in path.parts
+    }
 
 
 @pytest.mark.parametrize("drop", Drop)
@@ -83,7 +89,7 @@ def test_each_drop_happens_somewhere() -> None:
     """A kind that is never recorded is useless."""
     named = {
         node.attr
-        for name, tree in SOURCES.items()
+        for name, tree in sources().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Attribute) and name != "drops.py"
     }
@@ -95,7 +101,7 @@ def test_nothing_unreadable_is_left_out_without_a_word() -> None:
     """Each place that catches it records it, or informs the sender or the caller."""
     silent = [
         f"{name}:{handler.lineno}"
-        for name, tree in SOURCES.items()
+        for name, tree in sources().items()
         for handler in ast.walk(tree)
         if isinstance(handler, ast.ExceptHandler)
         and handler.type is not None
@@ -111,7 +117,7 @@ def test_every_other_warning_of_the_transports_is_known() -> None:
     """A new place that drops data of others has to use `Drops`."""
     warning = {
         name
-        for name, tree in SOURCES.items()
+        for name, tree in sources().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Attribute) and node.attr == "warning" and name != "drops.py"
     }
