@@ -365,8 +365,10 @@ async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """Otherwise the robot seems not to listen."""
+    rule = "[[allow]]\npublish = '/cmd_vel'\nlease = { ttl_sec = 60 }"
+    who = "[[who]]\nname = 'local'\nloopback = true\n"
     async with (
-        serving(Policy.default(allow_write=True)) as gateway,
+        serving(Policy.parse(who + rule)) as gateway,
         raw_connect(gateway, "/", {}, []) as first,
         raw_connect(gateway, "/", {}, []) as second,
     ):
