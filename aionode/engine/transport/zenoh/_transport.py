@@ -189,7 +189,7 @@ class ZenohTransport(Transport):
         self._recovery.start(session)
         self._stale_transports.start(session)
         self._stopped_peers.start(session)
-        await self._state.connections.wait_until_connected(expected)
+        await self._state.connections.wait_until_connected(expected, opened.others)
         # Configured peers may be absent, so they are not expected.
         self._expected = expected - bool(self.network.near_peers or self.network.config_file)
         answered = self._ask(session)

@@ -32,7 +32,8 @@ NEXT_LINK_S: Final = 0.3
 """How long `open` waits for each further peer, in seconds."""
 
 QUIET_S: Final = 0.015
-"""All peers are assumed to be connected after this long without a new one, in seconds."""
+"""All peers are assumed to be connected after this long without a new one, in seconds, where their
+number is not known."""
 
 MOMENT_NS: Final = 10_000_000_000
 """Time after the loss of a connection in which what was declared over it may return."""
@@ -133,10 +134,15 @@ class Connections:
                 self.lost.clear()
             self.lost.add(change.zid)
 
-    async def wait_until_connected(self, expected: int) -> None:
+    async def wait_until_connected(self, expected: int, others: int | None = None) -> None:
         """Wait until `expected` peers, and others dialled meanwhile, are connected.
 
         Gives up if they do not connect in time, after about a second.
+
+        Args:
+            expected: Number of peers that connect at once.
+            others: Number of all peers, if it is known; otherwise those that come soon after one
+                another are waited for.
         """
         if expected == 0:
             return
@@ -145,7 +151,7 @@ class Connections:
                 async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
                     await self._next()
             async with asyncio.timeout(FIRST_LINK_S):
-                while True:
+                while others is None or len(self.kinds) < others:
                     async with asyncio.timeout(QUIET_S):
                         await self._next()
         except TimeoutError:

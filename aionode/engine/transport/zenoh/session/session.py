@@ -227,12 +227,14 @@ class Opened(Struct, frozen=True):
         expected: Number of peers about to be connected.
         presence: Keeps it listed on this machine until closed; None if it is not listed.
         dialled: The ports of the other listed sessions.
+        others: Number of all other sessions; None if there may be some that are not listed.
     """
 
     session: zenoh.Session
     expected: int
     presence: socket.socket | None
     dialled: AbstractSet[int] = frozenset()
+    others: int | None = None
 
     def close(self) -> None:
         """Close both."""
@@ -295,7 +297,8 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         failed.pop_all()
     met = others & set(network.meeting_ports)
     expected = len(met) + len(unlisted) + bool(network.near_peers)
-    return Opened(session, expected, presence, others)
+    are_listed = not (unlisted or has_router or network.near_peers or network.config_file)
+    return Opened(session, expected, presence, others, len(others) if are_listed else None)
 
 
 def open_unlisted(network: Network, participant: str) -> Opened:
