@@ -10,12 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import grimp
+import pytest
 
 import aionode
 from tests import private_reads, structure
 
 if TYPE_CHECKING:
     pass
+
+pytestmark = pytest.mark.timeout(300)  # beside other work, parsing all modules takes a minute
 
 ROOT = Path(aionode.__file__).parent
 MODULES = sorted(
