@@ -33,7 +33,7 @@ class Overheard:
     def all(self, session: zenoh.Session) -> list[str]:
         """Return all keys before a final query of the test."""
         list(session.get(CONTROL, timeout=1))
-        assert self._control.wait(5)
+        assert self._control.wait(50)
         return self.keys
 
 

@@ -81,7 +81,7 @@ async def test_a_warning_of_the_robot_is_an_event(assisted: Bench, era: str) -> 
             found[:] = (await read(client, "robot://events"))["events"]
             await asyncio.sleep(0.01)  # noqa: TID251  # it comes over the network
 
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(50):
         await has_come()
     assert {(each["source"], each["text"]) for each in found} == {
         ("base", "the battery is low"), ("", "a person is near"),

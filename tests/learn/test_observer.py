@@ -112,7 +112,7 @@ def begin(work: Coroutine[Any, Any, Seen]) -> asyncio.Task[Seen]:
 
 async def next_of(seen: AsyncIterator[Seen]) -> Seen:
     """Return the next observation; fail if there is none yet."""
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(50):
         return await anext(seen)
 
 

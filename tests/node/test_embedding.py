@@ -107,9 +107,9 @@ def test_a_program_that_is_not_async_runs_nodes_in_a_background_loop() -> None:
     with BackgroundLoop() as background:
         end = background.submit(run_and_tell())
         publisher.publish(String(data="hi"))
-        assert heard.wait(5)
+        assert heard.wait(50)
         node.destroy_node()
-        assert end.result(5) == "destroyed"
+        assert end.result(50) == "destroyed"
 
     assert texts == ["hi"]
 

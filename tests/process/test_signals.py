@@ -138,7 +138,7 @@ def test_a_signal_after_the_first_second_ends_the_program_at_once(number: signal
         took_s = time.monotonic() - began_s
     assert status == 128 + number
     assert err.endswith(f"aionode: ended at once by a second signal ({number.name})\n")
-    assert took_s < 5.0  # a callback that refuses to end would go on forever
+    assert took_s < 30.0  # a callback that refuses to end would go on forever
 
 
 @pytest.mark.parametrize("step", ["time.sleep(1)", "pass"])

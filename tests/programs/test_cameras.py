@@ -472,7 +472,7 @@ async def test_a_silent_camera_does_not_keep_the_process(start: Start, tmp_path:
     writer = await asyncio.to_thread(os.open, pipe, os.O_WRONLY)
     try:
         node.destroy_node()
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(50):
             await asyncio.get_running_loop().shutdown_default_executor()
     finally:
         os.close(writer)
