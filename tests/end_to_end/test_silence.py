@@ -117,7 +117,7 @@ async def test_a_mover_that_ends_stops_the_wheels_soon(
 
 async def test_a_mover_that_is_frozen_stops_the_wheels(wheels: Node) -> None:
     """Commands from before are not delivered when it continues; new ones are."""
-    driven = Driven(wheels, 0.3)
+    driven = Driven(wheels, 2.0)
     with mover() as process:
         await driven.moves()
         process.send(signal.SIGSTOP)

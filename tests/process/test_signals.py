@@ -164,7 +164,7 @@ def test_a_second_signal_sends_the_stops_of_leases_and_then_what_was_published(s
         assert program.process.stderr is not None
         program.process.stdout.close()
         program.process.stderr.close()
-        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        program.send(SIGINT, SIGINT, pause_sec=0.5)
         status = program.process.wait(20)
         program.process.stdout = program.process.stderr = None
     os.close(writing)
@@ -183,7 +183,7 @@ def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
     """
     with Program(SOON, hooks, STUBBORN) as program:
         program.wait_until_ready()
-        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        program.send(SIGINT, SIGINT, pause_sec=0.5)
         status, out, err = program.end()
     assert (status, out) == (130, "no\nstop\n")
     assert "ZeroDivisionError" in err
@@ -259,7 +259,7 @@ def test_the_last_line_goes_into_no_file_of_the_program(tmp_path: Path) -> None:
     without_stderr = ("sh", "-c", 'exec "$@" 2>&-', "sh")
     with Program(opens, SOON, STUBBORN, before=without_stderr) as program:
         program.wait_until_ready()
-        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        program.send(SIGINT, SIGINT, pause_sec=0.5)
         status, _, _ = program.end()
     assert (status, file.read_text()) == (130, "")
 
