@@ -285,7 +285,7 @@ async def test_what_others_move_through_another_gateway_ends_by_its_policys_word
     assisted: Bench,
 ) -> None:
     """The policy that let them move determines who may end it."""
-    driver = POLICY.replace('name = "model"', 'name = "driver"')
+    driver = PATIENT.replace('name = "model"', 'name = "driver"')
     async with another_assistant(assisted, driver) as other:
         client = await assisted.connect()
         async with mcp.Client(other.server) as second, asyncio.TaskGroup() as tasks:
@@ -379,7 +379,7 @@ async def never(_request: Any, _response: Any) -> Any:
 
 
 @asynccontextmanager
-async def another_assistant(bench: Bench, policy: str = POLICY) -> AsyncIterator[Assistant]:
+async def another_assistant(bench: Bench, policy: str = PATIENT) -> AsyncIterator[Assistant]:
     """Yield the assistant of another program for the same robot."""
     async with (
         Node("another", context=bench.base.context) as node,
