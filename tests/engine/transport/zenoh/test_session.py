@@ -11,15 +11,18 @@ from collections.abc import Iterable
 from contextlib import AsyncExitStack, ExitStack, closing
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.engine.context import Context
+from aionode.engine.transport.network import network_from
 from aionode.engine.transport.zenoh.session.session import (
     answering_ports,
     close_session,
     open_router,
+    open_session,
     run_in_own_thread,
     speaking_ports,
 )
@@ -244,6 +247,24 @@ async def test_a_configuration_file_takes_the_place_of_all_settings(tmp_path: Pa
         await publisher.wait_for_subscribers()
         publisher.publish(Int32(data=1))
         assert (await subscription.receive()).data == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "others"),
+    [
+        ({}, 0),
+        ({"discovery_range": "SUBNET"}, None),
+        ({"config": {"scouting/gossip/enabled": True}}, None),
+    ],
+)
+async def test_the_number_of_peers_is_known_only_where_all_are_of_this_machine(
+    options: dict[str, Any], others: int | None
+) -> None:
+    """Gossip may introduce those of other machines, for which a start did not wait."""
+    opened = await open_session(network_from(os.environ, **options), "a10de")
+    opened.close()
+
+    assert opened.others == others
 
 
 async def test_a_port_that_is_taken_is_named() -> None:

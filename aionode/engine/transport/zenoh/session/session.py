@@ -297,7 +297,8 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         failed.pop_all()
     met = others & set(network.meeting_ports)
     expected = len(met) + len(unlisted) + bool(network.near_peers)
-    are_listed = not (unlisted or has_router or network.near_peers or network.config_file)
+    # Peers of other machines are introduced by gossip; overrides may name any.
+    are_listed = not (unlisted or has_router or network.near_peers or network.may_reach_far)
     return Opened(session, expected, presence, others, len(others) if are_listed else None)
 
 
