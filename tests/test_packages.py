@@ -209,6 +209,22 @@ def test_a_folder_that_leads_back_to_itself_ends(tmp_path: Path) -> None:
     assert list(Packages(tmp_path).sources()) == ["robot"]
 
 
+def test_a_link_to_itself_hides_no_package(tmp_path: Path) -> None:
+    """Nor does a link into a folder of another user: the system cannot say what either is."""
+    write(tmp_path / "robot", {"package.xml": "<name>robot</name>"})
+    (tmp_path / "loop").symlink_to("loop")
+
+    assert list(Packages(tmp_path).sources()) == ["robot"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pipe with a name")
+def test_a_setup_file_that_is_no_file_is_not_read(tmp_path: Path) -> None:
+    """Reading a pipe or a device would never end."""
+    os.mkfifo(tmp_path / "setup.py")
+
+    assert Packages(tmp_path).module_root("pieces") is None
+
+
 @pytest.mark.parametrize(
     ("name", "text"),
     [
@@ -254,6 +270,10 @@ def test_modules_of_other_python_projects_are_in_their_folder_or_in_src(tmp_path
         {"pyproject.toml": "not TOML"},
         {"pyproject.toml": "x=" + "[" * 5_000},
         {"setup.py": "x=" + "[" * 5_000},
+        {"setup.py": "x=a" + ".b" * 500 + "()\nsetup()"},
+        {"setup.py": "#" * 200_000 + "\nsetup()"},
+        {"pyproject.toml": "#" * 200_000 + "\n[project]"},
+        {"setup.cfg": "#" * 200_000 + "\n[metadata]\nname = x"},
         {"setup.cfg": "[flake8]\nmax-line-length = 99"},
         {"setup.py": "setup(package_dir={'': 'elsewhere'})"},
         {"setup.py": "setup()", "COLCON_IGNORE": ""},

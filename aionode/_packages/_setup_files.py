@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator
 from functools import cache, partial
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any, Final
 
 from aionode._packages._cmake import Install, installs_of, matching
@@ -21,6 +22,9 @@ __all__ = [
 
 SETUP_FILES: Final = frozenset({"pyproject.toml", "setup.cfg", "setup.py"})
 """The files that describe a Python project."""
+
+MAX_BYTES: Final = 200_000
+"""Maximum size of a file that is read, as a workspace may contain anything; they have some kB."""
 
 MAX_TEXT: Final = 100_000
 """Maximum length of texts and lists computed from a setup.py, since sums may grow without bound."""
@@ -49,9 +53,19 @@ def pyproject(folder: Path) -> dict[str, Any]:
     import tomllib  # few ROS packages have such a file
 
     try:
-        return tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
+        return tomllib.loads(content_of(folder / "pyproject.toml").decode())
     except (OSError, ValueError, RecursionError):
         return {}
+
+
+def content_of(file: Path) -> bytes:
+    """Return the content of a file; empty if it is not a regular one, or too large.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    status = file.stat()
+    return file.read_bytes() if S_ISREG(status.st_mode) and status.st_size <= MAX_BYTES else b""
 
 
 def table(content: Any, *keys: str) -> dict[str, Any]:
@@ -69,9 +83,10 @@ def import_folders(project: Path) -> tuple[Path, ...]:
     Without any, the project cannot be installed: its files have only the settings of tools, or say
     so.
     """
-    tools = table(pyproject(project), "tool")
+    described = pyproject(project)
+    tools = table(described, "tool")
     is_installed = (
-        not {"project", "build-system"}.isdisjoint(pyproject(project))
+        not {"project", "build-system"}.isdisjoint(described)
         or "poetry" in tools
         or bool(section(project, "metadata") or section(project, "options"))
         or bool(calls_of(project, "setup"))
@@ -118,9 +133,9 @@ def section(folder: Path, name: str) -> list[tuple[str, str]]:
     parser = configparser.ConfigParser(interpolation=None)
     parser.optionxform = str  # type: ignore[assignment,method-assign]  # option names are case-sensitive
     try:
-        parser.read(folder / "setup.cfg", encoding="utf-8")
+        parser.read_string(content_of(folder / "setup.cfg").decode())
         return parser.items(name)
-    except (configparser.Error, ValueError):
+    except (OSError, configparser.Error, ValueError):
         return []
 
 
@@ -204,10 +219,14 @@ def calls_of(folder: Path, function: str) -> list[dict[str, Any]]:
     They are evaluated as far as they can be.
     """
     try:
-        tree = ast.parse((folder / "setup.py").read_bytes())
+        tree = ast.parse(content_of(folder / "setup.py"))
+        return evaluated(tree, known_functions(folder), function)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
-    names: dict[str, Any] = known_functions(folder)
+
+
+def evaluated(tree: ast.Module, names: dict[str, Any], function: str) -> list[dict[str, Any]]:
+    """Return the arguments of each call of a function; `names` are those known at the start."""
     for statement in statements(tree.body):
         match statement:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):

@@ -106,13 +106,21 @@ def content(folder: Path) -> tuple[set[str], list[str]]:
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
-                if not entry.is_dir():
+                if not is_folder(entry):
                     files.add(entry.name)
                 elif not entry.name.startswith(".") and entry.name not in BUILT:
                     folders.append(entry.name)
     except OSError:  # an unreadable folder has no packages for this user
         return set(), []
     return files, sorted(folders)
+
+
+def is_folder(entry: os.DirEntry[str]) -> bool:
+    """Return whether an entry is a folder, or a link to one that can be reached."""
+    try:
+        return entry.is_dir()
+    except OSError:  # a link to itself, or into a folder of another user
+        return False
 
 
 def package_name(folder: Path) -> str:
