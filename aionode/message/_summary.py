@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any, Final
 
-import msgspec
 from msgspec import Struct
 
 from aionode.message._message import Message
@@ -128,18 +128,8 @@ def what_fits(msg: Message, name: str, limit: int) -> dict[str, Any]:
 
 
 def size(summary: dict[str, Any]) -> int:
-    """Return the bytes of a summary as JSON, with the spaces that `json.dumps` writes."""
-    return len(msgspec.json.encode(summary)) + spaces(summary)
-
-
-def spaces(value: object) -> int:
-    """Return how many spaces `json.dumps` writes after commas and colons."""
-    if isinstance(value, dict):
-        own = 2 * len(value) - 1 if value else 0
-        return own + sum(map(spaces, value.values()))
-    if isinstance(value, list):
-        return max(len(value) - 1, 0) + sum(map(spaces, value))
-    return 0
+    """Return the bytes of a summary as `json.dumps` writes it."""
+    return len(json.dumps(summary, ensure_ascii=False).encode())
 
 
 def summary_of(message: Message, detail: Detail) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from aionode.errors import MessageError
 from aionode.idl import define
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped
+from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Quaternion
 from aionode.interfaces.nav_msgs.msg import Odometry, Path
 from aionode.interfaces.sensor_msgs.msg import Image, LaserScan
 from aionode.interfaces.std_msgs.msg import Header, String
@@ -32,6 +32,13 @@ def length(summary: dict[str, Any]) -> int:
 def test_no_summary_is_longer_than_its_limit(message: Message, limit: int) -> None:
     """A model's context has limited room, whatever robots publish; and JSON has no NaN."""
     assert length(summarize(message, limit)) <= limit
+
+
+def test_large_numbers_fit_as_json_writes_them() -> None:
+    """`json.dumps` writes 1e+17, other encoders 1e17."""
+    message = Quaternion(x=1e17, y=1e17, z=1e17, w=1e17)
+
+    assert [n for n in range(64, 300) if length(summarize(message, n)) > n] == []
 
 
 def test_a_long_array_is_described() -> None:
