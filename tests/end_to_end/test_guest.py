@@ -12,7 +12,7 @@ import pytest
 
 from aionode.action import ServerGoalHandle
 from aionode.engine.context import Context
-from aionode.engine.transport.zenoh._defects import forgotten_peers
+from aionode.engine.transport.zenoh._defects import forgotten_peers, lingering
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -56,7 +56,8 @@ asyncio.run(main())
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Check for lost peers as early as possible: no other process uses these ports."""
+    """Check for sockets and lost peers as early as possible: no other process uses these ports."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     monkeypatch.setattr(forgotten_peers, "FIRST_S", 0.1)
     monkeypatch.setattr(forgotten_peers, "SURE_S", 0.05)
 

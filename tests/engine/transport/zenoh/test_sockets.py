@@ -17,6 +17,7 @@ import zenoh  # noqa: TID251  # makes real connections
 
 from aionode.engine.context import Context
 from aionode.engine.transport.zenoh._defects import closing as closing_defect
+from aionode.engine.transport.zenoh._defects import lingering
 from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.engine.transport.zenoh.connections.sockets import (
     Pair,
@@ -202,11 +203,14 @@ def test_searching_opens_one_descriptor_at_a_time() -> None:
     assert counts == [before + 1] * 2
 
 
-async def test_locks_of_the_program_outlast_all_that_is_done_with_sockets(tmp_path: Path) -> None:
+async def test_locks_of_the_program_outlast_all_that_is_done_with_sockets(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Closing a duplicate of a file drops the record locks that the process has on it.
 
     Another process wrote inside an exclusive transaction of SQLite.
     """
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     with locks(tmp_path):
         async with two_contexts() as (first, second):
             session, other = session_of(first), str(session_of(second).zid())

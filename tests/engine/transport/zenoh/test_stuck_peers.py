@@ -56,8 +56,11 @@ async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
         await until(lambda: set(options(session)) == {wanted})
 
 
-async def test_no_connection_waits_for_its_peer_when_it_is_closed() -> None:
+async def test_no_connection_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Zenoh's one thread that connects stood still for ten seconds when a stuck peer was lost."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     async with two_contexts() as both:
         for context in both:
             await until_set(session_of(context), (False, UNREAD_MS))
@@ -68,43 +71,39 @@ async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_leas
     near: bool, limit_ms: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Beside a thread that waited for it, Zenoh could not end it, and kept all others waiting."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     monkeypatch.setattr(lingering, "is_near", lambda _: near)
     async with two_contexts() as both:
         for context in both:
             await until_set(session_of(context), (False, limit_ms))
 
 
-async def test_no_thread_is_started_for_the_options_of_a_connection(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Each start of a process cost every other one of its domain a thread, a millisecond."""
-    async with Context() as first:
-        started: list[str] = []
-        start = threading.Thread.start
-
-        def note(thread: threading.Thread) -> None:
-            started.append(type(thread).__name__)
-            start(thread)
-
-        monkeypatch.setattr(threading.Thread, "start", note)
-        async with Context():
-            await until_set(session_of(first), (False, UNREAD_MS))
-
-    assert "Timer" not in started
-
-
 async def test_a_closed_context_looks_for_sockets_no_more() -> None:
-    """A remaining listener would keep the closed session alive."""
+    """A remaining timer would keep the closed session alive."""
     setters = living(lingering.SocketOptions)
-    async with two_contexts() as both:
-        for context in both:
-            await until_set(session_of(context), (False, UNREAD_MS))
+    others = set(threading.enumerate())
 
+    def timers() -> list[threading.Timer]:
+        return [
+            each
+            for each in threading.enumerate()
+            if isinstance(each, threading.Timer) and each not in others
+        ]
+
+    async with two_contexts():
+        await until(lambda: len(timers()) >= 2)
+
+    for timer in timers():
+        timer.join(10)
+    assert timers() == []
     assert living(lingering.SocketOptions) <= setters
 
 
-async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed() -> None:
+async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A router stood still for all when one of its peers had stopped, and was lost."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
     router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
     try:
         async with Context():

@@ -9,7 +9,7 @@ Reported:
 Seen in:
     1.8.0, 1.9.0, 1.10.2
 Workaround:
-    `SocketOptions` switches SO_LINGER off once a connection was made: nothing is lost, as the
+    `SocketOptions` switches SO_LINGER off soon after a connection was made: nothing is lost, as the
     system keeps sending. At the same time it sets the time limit of `blocked_sends`. On Linux only.
 """
 
@@ -17,19 +17,21 @@ from __future__ import annotations
 
 import socket
 import sys
+import threading
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
 from aionode.engine.transport.network import is_near
+from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._switch import is_mended
 from aionode.engine.transport.zenoh._defects.blocked_sends import unread_ms
 from aionode.engine.transport.zenoh.connections.handlers import direct
 from aionode.engine.transport.zenoh.connections.sockets import NO_LINGER, duplicates, find, pair_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from aionode.engine.transport.zenoh.connections.sockets import Pair
 
 __all__ = ["SocketOptions"]
 
@@ -37,9 +39,12 @@ UNREACHABLE_MS: Final = 5_000
 """How long sent bytes may stay unacknowledged before a connection to another machine is lost, in
 milliseconds."""
 
+SETTLE_S: Final = 0.5
+"""Delay before looking for sockets after a new connection, in seconds; several come at once."""
+
 
 class SocketOptions:
-    """Sets the options of each connection of a session as soon as it is made.
+    """Sets the options of each connection of a session, soon after it was made.
 
     Closing one never waits for its peer. One whose peer reads nothing for `unread_ms` is lost
     before the lease ends, as Zenoh could not end it while a thread waits for that peer. One to
@@ -47,41 +52,60 @@ class SocketOptions:
     retransmits after 0.2, 0.4, 0.8 … s, and after a network outage of 30 s it is silent for up to
     30 s more. A new connection finds the network immediately.
 
-    It works until the session is closed.
+    It works until the session is closed. The connections of a burst are looked for at once.
 
     Args:
         session: The session.
     """
 
+    # Shared by all sessions, as those of one process are often connected with each other. Zenoh's
+    # threads, the timer's and the loop hold it to use `_new`, `_timer` and `_closed`; nothing
+    # blocks meanwhile.
+    _lock: ClassVar = threading.Lock()
+    # Connections whose options are not set yet, and Zenoh's names of their peers.
+    _new: ClassVar[dict[Pair, str]] = {}
+
     def __init__(self, session: zenoh.Session) -> None:
+        self._timer: threading.Timer | None = None
+        self._closed = not sys.platform.startswith("linux")
         # It exists as long as this object, which its callback holds until the session is closed.
-        self._listener = session.info.declare_link_events_listener(direct(self._on_event))
-        # After the listener: a connection in between is handled twice, which is harmless.
-        set_options(session.info.links())
+        self._listener = session.info.declare_link_events_listener(
+            direct(self._on_event), history=True
+        )
 
     def close(self) -> None:
         """Stop watching."""
+        with self._lock:
+            self._closed = True
+            if self._timer is not None:
+                self._timer.cancel()
         self._listener.undeclare()
 
     def _on_event(self, event: zenoh.LinkEvent) -> None:
-        """Handle a connection that was made or lost, in a Zenoh thread.
+        """Handle a connection that was made or lost, in a Zenoh thread."""
+        if event.kind != zenoh.SampleKind.PUT:
+            return
+        with self._lock:
+            if self._closed:
+                return
+            if pair := pair_of(event.link):
+                self._new[pair] = str(event.link.dst)
+            if self._timer is None:
+                self._timer = threading.Timer(SETTLE_S, self._set)
+                self._timer.name = "aionode-zenoh"
+                self._timer.daemon = True
+                start_thread(self._timer)
 
-        There it takes 0.1 ms; a thread for it took several times as much, in every process of the
-        domain whenever another one started.
-        """
-        if event.kind == zenoh.SampleKind.PUT:
-            set_options([event.link])
-
-
-def set_options(links: Iterable[zenoh.Link]) -> None:
-    """Set the options of some connections, as far as the system reveals their sockets."""
-    if not sys.platform.startswith("linux"):
-        return
-    peers = {pair: str(link.dst) for link in links if (pair := pair_of(link))}
-    found = {descriptor: peers[pair] for pair, descriptor in find(peers).items()}
-    for descriptor, copy in duplicates(found):
-        limit_ms = unread_ms() if is_near(found[descriptor]) else UNREACHABLE_MS
-        with suppress(OSError):  # it is lost already
-            if is_mended("lingering"):
-                copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-            copy.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
+    def _set(self) -> None:
+        """Set the options of all new connections, in the timer's thread."""
+        with self._lock:
+            self._timer = None
+            new = self._new.copy()
+            self._new.clear()
+        peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
+        for descriptor, copy in duplicates(peers):
+            limit_ms = unread_ms() if is_near(peers[descriptor]) else UNREACHABLE_MS
+            with suppress(OSError):  # it is lost already
+                if is_mended("lingering"):
+                    copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                copy.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
