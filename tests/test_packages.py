@@ -289,6 +289,17 @@ def test_a_folder_that_is_no_project_is_not_importable(
     assert Packages(tmp_path).module_root("pieces") is None
 
 
+@pytest.mark.parametrize("files", [{"package.xml": "<name>x</name>"}, {}])
+def test_a_setup_file_is_not_importable(files: dict[str, str], tmp_path: Path) -> None:
+    """It would be executed; ``pip install`` leaves it out."""
+    write(tmp_path / "one", {**files, "setup.py": "setup()", "pieces.py": ""})
+
+    packages = Packages(tmp_path)
+
+    assert packages.module_root("pieces") == tmp_path / "one"
+    assert packages.module_root("setup") is None
+
+
 def test_ros_packages_precede_projects_and_a_project_may_contain_others(tmp_path: Path) -> None:
     """Repositories with one environment for all have a project around the others."""
     project = {"pyproject.toml": "[project]"}

@@ -182,8 +182,10 @@ class Packages:
         """Return the folder from which a Python module of the workspace is imported.
 
         ROS packages come first, then other Python projects, which are importable as after
-        ``pip install -e``.
+        ``pip install -e``. A ``setup.py`` is no module: it would run at its import.
         """
+        if module == "setup":
+            return None
         sources, projects = self._found()
         folders = [sources[module]] if module in sources else []
         folders += [folder for name, folder in sources.items() if name != module]
