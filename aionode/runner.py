@@ -13,7 +13,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Coroutine, Sequence
-from typing import Any, Final, Self
+from typing import Any, Final, Self, TextIO
 
 from aionode._process.imports import program_has_frozen
 from aionode._process.signals import signals_to, woken_by_signals
@@ -110,8 +110,10 @@ def run(
         ):
             runner.run(_until_stopped(nodes, stop, freeze))
     except Exception as error:  # printed for the user; the shell gets the exit status
-        with contextlib.suppress(OSError):  # the terminal is lost; the shell gets the status
-            sys.stderr.write(failure_text(error))
+        stderr: TextIO | None = sys.stderr  # None if it was closed when Python started
+        if stderr is not None:
+            with contextlib.suppress(OSError):  # the terminal is lost; the shell gets the status
+                stderr.write(failure_text(error))
         raise SystemExit(1) from error
     finally:
         release_root()

@@ -311,6 +311,16 @@ def test_a_failing_node_ends_the_others() -> None:
     assert other.destroyed
 
 
+def test_a_failure_without_stderr_is_the_status(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python has none if its descriptor was closed at the start, as some daemons do."""
+    failing = Node("failing", context=local_context())
+    failing.create_timer(0.0, lambda: 1 / 0)
+    monkeypatch.setattr(sys, "stderr", None)
+    with pytest.raises(SystemExit) as caught:
+        run_in_this_process(failing)
+    assert caught.value.code == 1
+
+
 def test_run_works_outside_the_main_thread() -> None:
     """Signals do not arrive there, so no handlers are installed."""
     ran: list[bool] = []

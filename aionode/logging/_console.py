@@ -227,8 +227,8 @@ class ConsoleHandler(logging.Handler):
         self.setFormatter(LineFormatter(settings.line_format))
 
     @property
-    def stream(self) -> TextIO:
-        """The current output stream."""
+    def stream(self) -> TextIO | None:
+        """The current output stream; None if its descriptor was closed when Python started."""
         return sys.stdout if self.settings.use_stdout else sys.stderr
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -236,9 +236,9 @@ class ConsoleHandler(logging.Handler):
         if record.__dict__.get("aionode_shown"):
             return  # already handled, as both the logger and the root logger have this handler
         record.aionode_shown = True
-        if is_shown_elsewhere(record):
-            return
         stream, settings = self.stream, self.settings
+        if stream is None or is_shown_elsewhere(record):
+            return
         try:
             line = self.format(record)
             colours = settings.colours

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any, Final
 
 from msgspec import Struct
@@ -129,6 +128,8 @@ def what_fits(msg: Message, name: str, limit: int) -> dict[str, Any]:
 
 def size(summary: dict[str, Any]) -> int:
     """Return the bytes of a summary as `json.dumps` writes it."""
+    import json  # few programs need it
+
     return len(json.dumps(summary, ensure_ascii=False).encode())
 
 

@@ -223,6 +223,13 @@ def test_a_closed_stream_does_not_fail_the_caller(monkeypatch: pytest.MonkeyPatc
     assert logger().info("m") is True
 
 
+def test_a_missing_stream_does_not_fail_the_caller(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python has no stderr if its descriptor was closed at the start, as some daemons do."""
+    monkeypatch.setattr(sys, "stderr", None)
+
+    assert logger().info("m") is True
+
+
 # Levels
 
 
