@@ -297,8 +297,11 @@ async def test_a_vesc_that_reads_nothing_blocks_nobody(car: Car) -> None:
     await settle()
     await car.step(0.4)
 
-    car.vesc.work()
-    assert car.vesc.commands[-2:] == [command("speed", 1000.0), RELEASE]
+    def newest() -> list[bytes]:
+        car.vesc.work()
+        return car.vesc.commands[-2:]
+
+    await until(lambda: newest() == [command("speed", 1000.0), RELEASE])
 
 
 @pytest.mark.parametrize(
