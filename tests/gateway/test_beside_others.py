@@ -189,10 +189,11 @@ async def test_a_page_of_another_origin_cannot_lock_out_who_reads_it(
 async def test_nor_can_a_page_whose_browser_does_not_name_it() -> None:
     """Over plain HTTP to another machine, browsers do not reveal which page requests an image."""
     async with serving(Policy.parse(POLICY)) as gateway:
-        for number in range(20):
-            await get(gateway, f"/topics/x.jpeg?token={number}", BROWSER)
+        answers = [
+            await get(gateway, f"/topics/x.jpeg?token={number}", BROWSER) for number in range(20)
+        ]
 
-        assert (await get(gateway, "/topics?token=7", BROWSER)).status_code == 429
+        assert 429 in [answer.status_code for answer in answers]  # each second, one more is taken
         assert (await get(gateway, "/topics", BROWSER | ADMIN)).status_code == 200
         own = BROWSER | {"sec-fetch-site": "same-origin"}
         assert (await get(gateway, "/topics?token=admin", own)).status_code == 200
