@@ -249,7 +249,8 @@ class Context:
         # From construction to destruction, each with what to call in a forked child.
         self._nodes: dict[ContextNode, Callable[[], None]] = {}
         self._next_id = 0  # of the next node or endpoint
-        self._users = 0  # running nodes and `async with` blocks; the transports close at 0
+        # The tasks of running nodes and `async with` blocks; without any, the transports close.
+        self._users: list[asyncio.Task[Any] | None] = []
         self._shut_down = False  # set by `shutdown`, and never reset
         self._reporters: dict[object, Callable[[], NodeReport]] = {}
         self._open = False  # whether the transports are open
@@ -378,9 +379,20 @@ class Context:
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Destroy the nodes, wait until they have ended, and close the transports."""
+        """Destroy the nodes, wait until they have ended, and close the transports.
+
+        Raises:
+            RuntimeError: this task has started a node that it has not ended, and would wait for
+                itself.
+        """
         self.shutdown()
-        await to_the_end(self._release(), exc)
+        task = asyncio.current_task()
+        await to_the_end(self._release(task), exc)
+        if task in self._users:
+            raise RuntimeError(
+                f"{self!r}: the `async with` of the context ends before that of a node which the "
+                "same task has started, and would wait for it forever; end the node first"
+            )
         if self._users:
             await self._closed.wait()
 
@@ -405,7 +417,8 @@ class Context:
         self._refuse_if_inherited()
         with self._loop_guard:  # event loops may run in different threads
             self._bind_to_loop()
-            self._users += 1  # before opening, so that another loop sees it in use
+            # Before opening, so that another loop sees it in use.
+            self._users.append(asyncio.current_task())
             self._affinity.attach()
         try:
             async with self._transition:
@@ -414,7 +427,7 @@ class Context:
                     self._open = True
                     self._closed.clear()
         except BaseException:
-            self._users -= 1
+            self._users.remove(asyncio.current_task())
             if not self._users:
                 self._affinity.detach()
             raise
@@ -432,7 +445,7 @@ class Context:
         self._loop = loop
         self._transition = asyncio.Lock()
         self._closed = asyncio.Event()
-        self._users = 0
+        self._users = []
         self._open = False
 
     async def _open_transports(self) -> None:
@@ -470,19 +483,22 @@ class Context:
         if stop is not None:
             stop()
 
-    async def _release(self) -> None:
+    async def _release(self, task: asyncio.Task[Any] | None) -> None:
         """Undo one `_acquire`; the last user closes the transports.
 
         Must not be cancelled half-way: call it through `to_the_end`.
+
+        Args:
+            task: That of the caller, which may have left the `_acquire` to another one.
         """
         if self._inherited:
             return
-        self._users -= 1
+        self._users.remove(task if task in self._users else self._users[0])
         async with self._transition:
-            if self._users == 0 and self._open:  # unless it was acquired again in the meantime
+            if not self._users and self._open:  # unless it was acquired again in the meantime
                 self._open = False
                 await self._close_transports()
-        if self._users == 0:
+        if not self._users:
             self._affinity.detach()
             self._closed.set()
             if self._shut_down:

@@ -168,6 +168,30 @@ def test_two_loops_that_open_a_context_at_once_are_told_at_once() -> None:
         first.result(10)
 
 
+async def test_a_context_does_not_wait_for_a_node_of_its_own_task() -> None:
+    """The task cannot end the node while it waits for its end."""
+    context = local_context()
+    node = Node("node", context=context)
+
+    with pytest.raises(RuntimeError, match="end the node first"):
+        async with context:
+            await node.__aenter__()
+
+    await node.__aexit__(None, None, None)
+    assert not node.is_running
+
+
+async def test_a_node_may_be_ended_by_another_task_than_that_which_started_it() -> None:
+    """Fixtures are entered and left by tasks of their own."""
+    context = local_context()
+    node = Node("node", context=context)
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(node.__aenter__())
+
+    async with context, asyncio.TaskGroup() as tasks:
+        tasks.create_task(node.__aexit__(None, None, None))
+
+
 async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
     """A second attempt may succeed, even in another loop."""
 

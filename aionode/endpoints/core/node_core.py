@@ -250,7 +250,7 @@ class NodeCore:
                     raise
             finally:
                 self.running = False
-                await to_the_end(self.context._release(), raising)
+                await to_the_end(self.context._release(asyncio.current_task()), raising)
 
     def destroy(self) -> None:
         """End the node: at once if it is not running; otherwise `finish` waits for the end."""
