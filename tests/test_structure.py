@@ -7,16 +7,12 @@ import re
 from collections import Counter
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import grimp
 import pytest
 
 import aionode
 from tests import private_reads, structure
-
-if TYPE_CHECKING:
-    pass
 
 pytestmark = pytest.mark.timeout(300)  # beside other work, parsing all modules takes a minute
 

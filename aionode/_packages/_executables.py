@@ -5,16 +5,20 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from aionode._packages._setup_files import entry_points, scripts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 __all__ = [
     "Executable",
     "executables_in",
-    "has_module",
     "installed_executables",
     "is_python",
+    "module_folders",
+    "root_of",
     "runs_in_this_python",
 ]
 
@@ -57,7 +61,8 @@ def executables_in(folder: Path, package: str) -> dict[str, Executable]:
         for name, file in scripts(folder, package).items()
     }
     for name, target in entry_points(folder).items():
-        root = module_root(folder, target.partition(":")[0].partition(".")[0])
+        module = target.partition(":")[0].partition(".")[0]
+        root = root_of(module, module_folders(folder))
         executables[name] = Executable(package, name, target, root or folder)
     return dict(sorted(executables.items()))
 
@@ -73,14 +78,17 @@ def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:
     }
 
 
-def module_root(folder: Path, module: str) -> Path | None:
-    """Return the folder within a package that contains a Python module, if any."""
-    return next((root for root in (folder, folder / "src") if has_module(root, module)), None)
+def module_folders(package: Path) -> tuple[Path, Path]:
+    """Return the folders within a package's source folder that may contain its Python modules."""
+    return package, package / "src"
 
 
-def has_module(root: Path, module: str) -> bool:
-    """Return whether a folder contains a Python module."""
-    return (root / module / "__init__.py").is_file() or (root / f"{module}.py").is_file()
+def root_of(module: str, folders: Iterable[Path]) -> Path | None:
+    """Return the first of these folders that contains a Python module, if any."""
+    for folder in folders:
+        if (folder / module / "__init__.py").is_file() or (folder / f"{module}.py").is_file():
+            return folder
+    return None
 
 
 def is_python(file: Path) -> bool:

@@ -11,8 +11,9 @@ from pathlib import Path
 from aionode._packages._executables import (
     Executable,
     executables_in,
-    has_module,
     installed_executables,
+    module_folders,
+    root_of,
     runs_in_this_python,
 )
 from aionode._packages._setup_files import import_folders
@@ -189,13 +190,10 @@ class Packages:
         sources, projects = self._found()
         folders = [sources[module]] if module in sources else []
         folders += [folder for name, folder in sources.items() if name != module]
-        for root in chain(
-            (root for folder in folders for root in (folder, folder / "src")),
-            (root for project in projects for root in import_folders(project)),
-        ):
-            if has_module(root, module):
-                return root
-        return None
+        return root_of(
+            module,
+            chain.from_iterable(chain(map(module_folders, folders), map(import_folders, projects))),
+        )
 
     def _found(self) -> Sources:
         """Return what is in the workspace."""
