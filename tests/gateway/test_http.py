@@ -264,6 +264,34 @@ async def test_a_body_that_is_no_message_is_refused(
     assert (answer.status_code, answer.json()["code"]) == (status, code)
 
 
+async def test_a_body_that_is_too_large_need_not_be_sent(aionode_context: Context) -> None:
+    """A caller that asks first, as curl does, is refused by the size that it names."""
+    async with client_of(aionode_context, Policy.default(allow_write=True)) as client:
+        reader, writer = await asyncio.open_connection("127.0.0.1", client.base_url.port)
+        host = f"Host: 127.0.0.1:{client.base_url.port}\r\n"
+        body = "Expect: 100-continue\r\nContent-Length: 10000001\r\n"
+        writer.write(f"POST /topics/chatter HTTP/1.1\r\n{host}{body}\r\n".encode())
+        answer = await reader.readline()
+        writer.close()
+
+    assert answer.split()[1] == b"413"
+
+
+async def test_a_body_of_unknown_size_is_refused_once_it_is_too_large(
+    client: httpx.AsyncClient,
+) -> None:
+    """A caller that streams it names no size."""
+
+    async def parts() -> AsyncIterator[bytes]:
+        for _ in range(11):
+            yield b"a" * 1_000_000
+
+    headers = {"Content-Type": "application/json"}
+    answer = await client.post("/topics/chatter", content=parts(), headers=headers)
+
+    assert (answer.status_code, answer.json()["code"]) == (413, "too_large")
+
+
 async def test_a_body_that_does_not_come_has_an_end(aionode_context: Context) -> None:
     """A caller that sends one byte a minute does not keep a place forever."""
     policy = """

@@ -236,13 +236,18 @@ def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
     if scope["type"] != "http":
         return receive
     received = 0
+    declared = next((int(size) for name, size in scope["headers"] if name == b"content-length"), 0)
+
+    def check(size: int) -> None:
+        if size > most:
+            raise RefusedError("request", f"its body has more than {most} bytes", "too_large")
 
     async def receive_limited() -> Message:
         nonlocal received
+        check(declared)  # before `receive` asks a client that waits for "100 Continue" to send it
         message = await receive()
         received += len(message.get("body", b""))
-        if received > most:
-            raise RefusedError("request", f"its body has more than {most} bytes", "too_large")
+        check(received)
         return message
 
     return receive_limited
