@@ -1,4 +1,4 @@
-"""A single delayed call."""
+"""Delayed calls that can be cancelled: a single one, or any number together."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["Later"]
+__all__ = ["DelayedCalls", "Later"]
 
 
 class Later:
@@ -39,3 +39,28 @@ class Later:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+
+
+class DelayedCalls:
+    """Delayed calls in the running event loop that are cancelled together."""
+
+    __slots__ = ("_timers",)
+
+    def __init__(self) -> None:
+        self._timers: set[asyncio.TimerHandle] = set()  # until they have run
+
+    def add(self, delay_s: float, action: Callable[[], object]) -> None:
+        """Call `action` after a delay, unless `cancel` is called first."""
+
+        def run() -> None:
+            self._timers.discard(timer)
+            action()
+
+        timer = asyncio.get_running_loop().call_later(delay_s, run)
+        self._timers.add(timer)
+
+    def cancel(self) -> None:
+        """Cancel all pending calls."""
+        for timer in self._timers:
+            timer.cancel()
+        self._timers.clear()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from aionode._process.later import Later
+from aionode._process.later import DelayedCalls, Later
 
 
 async def test_one_call_waits_at_a_time() -> None:
@@ -35,3 +35,20 @@ async def test_what_is_cancelled_is_not_called() -> None:
 
     await called.wait()
     assert not later.waits
+
+
+async def test_calls_that_are_cancelled_together_are_not_called() -> None:
+    """What has run, or is cancelled, is not kept."""
+    delayed, calls, called = DelayedCalls(), [], asyncio.Event()
+    delayed.add(0.0, lambda: calls.append("before"))
+    delayed.add(0.0, called.set)
+    await called.wait()
+
+    delayed.add(0.0, lambda: calls.append("cancelled"))
+    delayed.add(0.0, lambda: calls.append("cancelled too"))
+    delayed.cancel()
+    called.clear()
+    delayed.add(0.0, called.set)
+    await called.wait()
+
+    assert calls == ["before"]

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from aionode._process.concurrency import checkpoint
+from aionode._process.later import DelayedCalls
 from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints.core.callback_runner import accepts
@@ -166,7 +167,7 @@ class SilenceWatch:
         self._called_ns: int | None = None
         # Callbacks that are in progress.
         self._running: set[asyncio.Task[None]] = set()
-        self._timers: set[asyncio.TimerHandle] = set()  # of `_later`, until they have run
+        self._delayed = DelayedCalls()  # what to look at later; nothing, once the watch is reset
         entity._watch(self._note_publisher)
 
     # Lifetime
@@ -198,9 +199,7 @@ class SilenceWatch:
         self._handed = False
         self._newest = b""
         self._heard.clear()
-        for timer in self._timers:
-            timer.cancel()
-        self._timers.clear()
+        self._delayed.cancel()
 
     # Messages
 
@@ -284,7 +283,7 @@ class SilenceWatch:
         for task in self._running:
             if not task.cancelling():
                 task.cancel()
-        self._later(NOTICE_S, lambda: self._say_waiting("was cancelled and has not ended"))
+        self._delayed.add(NOTICE_S, lambda: self._say_waiting("was cancelled and has not ended"))
 
     def _say_waiting(self, why: str) -> None:
         if not (self._due and self._running):
@@ -328,17 +327,7 @@ class SilenceWatch:
             elif gone_ns - graph.router_lost_ns > ROUTER_S * S_TO_NS:
                 self._lose(publisher.gid)
 
-        self._later(delay_s, look)
-
-    def _later(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call `call` after a delay, unless the watch is reset before."""
-
-        def run() -> None:
-            self._timers.discard(timer)
-            call()
-
-        timer = asyncio.get_running_loop().call_later(delay_s, run)
-        self._timers.add(timer)
+        self._delayed.add(delay_s, look)
 
     def _lose(self, gid: bytes) -> None:
         self._heard.pop(gid, None)

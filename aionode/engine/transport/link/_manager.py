@@ -7,6 +7,7 @@ import logging
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.later import DelayedCalls
 from aionode._process.recent import Recent
 from aionode._process.restart import doubled
 from aionode.clock import MachineTime
@@ -130,7 +131,7 @@ class LinkManager:
         # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
         # until everything is confirmed or the connection is closed.
         self._ending: Recent[tuple[Connection, bytes], LinkSendQueue] = Recent(MAX_ENDING)
-        self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
+        self._delayed = DelayedCalls()  # of `later`
         self._link_changes = 0
 
     # Lifetime
@@ -152,9 +153,7 @@ class LinkManager:
         if listener is not None and self._loop is not None:
             self._loop.remove_reader(listener.sock.fileno())
             listener.close()
-        for timer in self._timers:
-            timer.cancel()
-        self._timers.clear()
+        self._delayed.cancel()
         for send_queue in self._ending.values():  # `flush` has warned about losses
             send_queue.drop()
         self._ending.clear()
@@ -217,15 +216,8 @@ class LinkManager:
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
         """Call `call` after a delay, unless the links are closed first."""
-        if self._loop is None or self._listener is None:
-            return
-
-        def run() -> None:
-            self._timers.discard(timer)
-            call()
-
-        timer = self._loop.call_later(delay_s, run)
-        self._timers.add(timer)
+        if self._listener is not None:
+            self._delayed.add(delay_s, call)
 
     def post(self, connection: Connection, stop: bytes) -> None:
         """Send a STOP to the other end of a link over Zenoh, from any thread. It may be lost."""
