@@ -165,6 +165,7 @@ def test_a_managed_node_fails_is_canceled_and_goes_up_and_down() -> None:
     assert program.process.returncode == 0
 
 
+@pytest.mark.slow
 def test_the_lifecycle_demo_of_ros_in_three_programs(domain: int) -> None:
     """Talker, listener and manager: what is said while active, and each transition."""
     with (
@@ -197,6 +198,7 @@ def test_the_lifecycle_demo_of_ros_in_three_programs(domain: int) -> None:
     assert goals[-2:] == ["shuttingdown", "finalized"]
 
 
+@pytest.mark.slow
 def test_a_pause_misses_the_deadline_at_both_ends() -> None:
     """In the pause and not before."""
     with running("-m", "aionode.examples.quality_of_service.deadline") as program:
@@ -209,6 +211,7 @@ def test_a_pause_misses_the_deadline_at_both_ends() -> None:
     assert program.process.returncode == 0
 
 
+@pytest.mark.slow
 def test_a_late_subscription_gets_what_is_still_valid() -> None:
     """The newest messages, and no older ones."""
     with running("-m", "aionode.examples.quality_of_service.lifespan") as program:
@@ -289,6 +292,7 @@ def test_lost_messages_are_all_told(domain: int) -> None:
     assert program.process.returncode == 0
 
 
+@pytest.mark.slow
 def test_timers_keep_their_grid() -> None:
     """The fast timer ticks while the slow one works; a busy machine may take a tick or two."""
     with running("-m", "aionode.examples.timers") as program:
@@ -485,6 +489,7 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
     assert [line.rpartition(" ")[2] for line in lines] == ["7", "14"]
 
 
+@pytest.mark.slow
 def test_the_arm_says_where_its_gripper_is(domain: int) -> None:
     """In the map, and the cup in the gripper; the tree is seen from another process."""
     with running("examples/arm.py", domain=domain) as arm:
@@ -595,6 +600,7 @@ def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int
     assert [line for line in warnings if "[aionode.load]" not in line] == []
 
 
+@pytest.mark.slow
 def test_the_web_application_runs_where_it_is_copied_to(
     tmp_path: Path,
 ) -> None:

@@ -110,6 +110,7 @@ def without(
     return pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider", *options)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_pytest_starts_where_no_plugin_for_async_tests_is(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
@@ -120,6 +121,7 @@ def test_pytest_starts_where_no_plugin_for_async_tests_is(
     result.assert_outcomes(passed=1)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_an_async_fixture_says_what_it_needs(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
@@ -131,6 +133,7 @@ def test_an_async_fixture_says_what_it_needs(
     result.stdout.fnmatch_lines(["*pip install pytest-asyncio*"])
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_the_fixtures_work_with_anyio_alone(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
@@ -149,7 +152,11 @@ def test_the_fixtures_work_with_anyio_alone(
 @pytest.mark.processes
 @pytest.mark.parametrize(
     ("mode", "mark"),
-    [("strict", "@pytest.mark.asyncio"), ("auto", ""), ("strict", "@pytest.mark.anyio")],
+    [
+        pytest.param("strict", "@pytest.mark.asyncio", marks=pytest.mark.slow),
+        ("auto", ""),
+        pytest.param("strict", "@pytest.mark.anyio", marks=pytest.mark.slow),
+    ],
 )
 def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
     mode: str, mark: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch

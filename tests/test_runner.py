@@ -209,7 +209,7 @@ def nothing_is_frozen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("nothing_is_frozen")
-@pytest.mark.parametrize("is_frozen_before", [False, True])
+@pytest.mark.parametrize("is_frozen_before", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     monkeypatch: pytest.MonkeyPatch, *, is_frozen_before: bool
 ) -> None:
@@ -238,7 +238,7 @@ def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
 
 
 @pytest.mark.usefixtures("nothing_is_frozen")
-@pytest.mark.parametrize("when", ["first", "afterwards"])
+@pytest.mark.parametrize("when", ["first", pytest.param("afterwards", marks=pytest.mark.slow)])
 def test_what_the_program_freezes_while_it_runs_stays_frozen(
     monkeypatch: pytest.MonkeyPatch, when: str
 ) -> None:

@@ -267,6 +267,7 @@ async def test_the_robot_stops_when_the_node_of_the_application_fails(
     )
 
 
+@pytest.mark.slow
 async def test_a_killed_robot_ends_the_stream_and_one_that_is_back_drives(
     web: httpx.AsyncClient, wheels: Wheels, robots: Robots, app: FastAPI
 ) -> None:

@@ -80,6 +80,7 @@ def test_types_whose_names_ros_does_not_allow_are_read(typename: str) -> None:
     assert cdr.decode(made, cdr.encode(made(value=2.5))).value == 2.5
 
 
+@pytest.mark.slow
 async def test_one_definition_that_cannot_be_read_costs_its_own_topic(tmp_path: Path) -> None:
     """`bag play` says why it is not played, and plays everything else."""
     odd = {

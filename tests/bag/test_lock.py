@@ -89,7 +89,13 @@ def content(path: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("compression", ["zstd", "zstd_small", "lz4", "none"])
+@pytest.mark.parametrize(
+    "compression",
+    [
+        "zstd",
+        *(pytest.param(each, marks=pytest.mark.slow) for each in ("zstd_small", "lz4", "none")),
+    ],
+)
 def test_a_silent_recording_is_left_alone_until_its_recorder_is_killed(
     compression: str, tmp_path: Path
 ) -> None:

@@ -426,7 +426,7 @@ def limit_files() -> None:
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("disk", ["a limit", "a disk"])
+@pytest.mark.parametrize("disk", ["a limit", pytest.param("a disk", marks=pytest.mark.slow)])
 def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(
     disk: str, tmp_path: Path
 ) -> None:

@@ -74,6 +74,7 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
     assert "this may be incomplete" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
 @pytest.mark.parametrize("is_stopped", [True, False])
 def test_each_command_names_a_process_that_does_not_answer(

@@ -41,6 +41,7 @@ def run(env: dict[str, str], *arguments: str, **variables: str) -> subprocess.Co
     return fork_server.run(["-m", "aionode", *arguments], env=env | variables, timeout=50)
 
 
+@pytest.mark.slow
 def test_a_command_says_that_the_robot_is_humble(env: dict[str, str]) -> None:
     """The graph is shown nevertheless."""
     done = run(env, "topic", "list")

@@ -40,6 +40,7 @@ def test_show_says_what_a_type_is_for(screen: Any) -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_shipped_type_has_comments(screen: Any) -> None:
     """A placeholder such as "The request of GetMap." does not count."""
     for name in shipped_types():

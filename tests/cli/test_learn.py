@@ -138,6 +138,7 @@ def test_keys_begin_and_end_episodes(in_terminal: Recording) -> None:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_ctrl_c_closes_the_bag_of_an_episode_that_has_not_ended(in_terminal: Recording) -> None:
     """Nobody said how it ended, so it says nothing, either."""

@@ -121,7 +121,7 @@ async def test_set_waits_for_a_transition_as_long_as_asked(
     node_factory(Slow, "slow")
     await settle()
 
-    waiting = set_state(tool, "/slow", "configure", timeout=2.0, output=screen.output)
+    waiting = set_state(tool, "/slow", "configure", timeout=0.2, output=screen.output)
     with pytest.raises(RequestTimeoutError, match="change_state"):
         await asyncio.gather(waiting, manual_clock.advance(3.0))
 

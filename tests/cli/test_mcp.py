@@ -182,6 +182,7 @@ async def test_it_ends_with_its_client_while_a_call_is_under_way() -> None:
     assert status == 0
 
 
+@pytest.mark.slow
 def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
     """It takes a second, and 60 MB."""
     program = (
@@ -198,7 +199,14 @@ def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
     assert shown.stdout == "[]\n"
 
 
-@pytest.mark.parametrize("words", [["mcp"], ["mcp", "try"], ["mcp", "try", "stop"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        pytest.param(["mcp"], marks=pytest.mark.slow),
+        pytest.param(["mcp", "try"], marks=pytest.mark.slow),
+        ["mcp", "try", "stop"],
+    ],
+)
 def test_a_missing_extra_is_named(words: list[str]) -> None:
     """It differs from that of the gateway."""
     program = (

@@ -142,6 +142,7 @@ def test_topic_echo_once(terminals: Terminals) -> None:
     assert terminals.shown("topic", "echo", "--once", "/chatter") == ("data: Hello\n---\n", 0)
 
 
+@pytest.mark.slow
 def test_topic_plot_draws_until_ctrl_c(terminals: Terminals) -> None:
     """In colours and dots, repeatedly in the same place; Ctrl-C is its normal end."""
     command = terminals.open("topic", "plot", "/stamped.header.stamp.nanosec", "-w", "2")
@@ -226,8 +227,8 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
     [
         ("topic echo /chatter", "data: Hello", 0),
         pytest.param("topic hz /chatter", "average rate: ", 0, marks=pytest.mark.stress),
-        ("topic hz /chatter /stamped", "min_delta", 0),
-        ("topic bw /chatter", "/s from", 0),
+        pytest.param("topic hz /chatter /stamped", "min_delta", 0, marks=pytest.mark.slow),
+        pytest.param("topic bw /chatter", "/s from", 0, marks=pytest.mark.slow),
         pytest.param("topic delay /stamped", "average delay: ", 0, marks=pytest.mark.stress),
         pytest.param(
             "topic pub /out std_msgs/msg/String", "publishing #1", 0, marks=pytest.mark.stress
@@ -237,7 +238,9 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
             "topic hz /unknown", "does not appear to be published yet", 0, marks=pytest.mark.stress
         ),
         (f"service call /unknown {ADD}", "waiting for service to become available", 130),
-        (f"action send_goal /fibonacci {FIBONACCI}", "Goal accepted", 0),
+        pytest.param(
+            f"action send_goal /fibonacci {FIBONACCI}", "Goal accepted", 0, marks=pytest.mark.slow
+        ),
         pytest.param(
             f"action send_goal /unknown {FIBONACCI}",
             "Waiting for an action server",
@@ -245,7 +248,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
             marks=pytest.mark.stress,
         ),
         ("router -l tcp/127.0.0.1:0", "Router is listening", 0),
-        ("gateway --port 0", "Gateway is listening", 0),
+        pytest.param("gateway --port 0", "Gateway is listening", 0, marks=pytest.mark.slow),
     ],
 )
 def test_ctrl_c_ends_a_command_without_a_traceback(
@@ -395,6 +398,7 @@ def test_programs_get_one_record_for_each_line(terminals: Terminals) -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
     """It sees all nodes of the other process, and no router; late timers are of a busy machine."""
     text, status = terminals.shown("doctor")

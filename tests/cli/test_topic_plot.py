@@ -172,6 +172,7 @@ def recording(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 async def test_a_recording_is_plotted_as_a_whole(
     tool: Node, screen: Any, recording: Path, tmp_path: Path
 ) -> None:

@@ -141,7 +141,7 @@ def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
 @pytest.mark.parametrize(
     ("role", "messages", "size"),
     [
-        ("lister", 20_000, 20),
+        pytest.param("lister", 20_000, 20, marks=pytest.mark.slow),
         ("plain", 200, 20_000),
         pytest.param("lister", 200, 20_000, marks=pytest.mark.stress),
         pytest.param("plain", 20_000, 20, marks=pytest.mark.stress),

@@ -79,6 +79,7 @@ def test_a_subprocess_with_a_function_before_exec_works_beside_a_node() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_forked_child_may_end_as_programs_do() -> None:
     """With its exit handlers and the finalization of the interpreter."""
     assert told("between", fresh=True) == ["exit 0", "parent: done"]

@@ -169,7 +169,7 @@ async def test_a_lost_connection_and_its_recovery_leave_the_process_as_it_was(
         await asyncio.to_thread(router.close)
 
 
-@pytest.mark.parametrize("route", ["link", "zenoh"])
+@pytest.mark.parametrize("route", ["link", pytest.param("zenoh", marks=pytest.mark.slow)])
 async def test_an_end_beside_a_frozen_peer_leaves_the_process_as_it_was(
     route: str, tmp_path: Path
 ) -> None:
@@ -185,7 +185,14 @@ async def test_an_end_beside_a_frozen_peer_leaves_the_process_as_it_was(
                 publisher.publish(Int32())
 
 
-@pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "failure", "return"])
+@pytest.mark.parametrize(
+    "end",
+    [
+        "SIGINT",
+        "return",
+        *(pytest.param(end, marks=pytest.mark.slow) for end in ("SIGTERM", "failure")),
+    ],
+)
 def test_a_program_is_left_as_it_was_when_run_returns(end: str, tmp_path: Path) -> None:
     """It may continue with its own signal handlers, `gc` settings and loggers."""
     with Process("tests/end_to_end/guest_member.py", str(tmp_path), end, fresh=True) as program:

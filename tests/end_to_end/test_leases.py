@@ -35,7 +35,11 @@ def assert_stopped(wheels: Process) -> None:
 
 @pytest.mark.parametrize(
     ("link", "what"),
-    [("on", "spin"), ("off", "sleep"), pytest.param("on", "sleep", marks=pytest.mark.stress)],
+    [
+        pytest.param("on", "spin", marks=pytest.mark.slow),
+        ("off", "sleep"),
+        pytest.param("on", "sleep", marks=pytest.mark.stress),
+    ],
 )
 def test_the_stop_of_a_blocked_loop_arrives(
     monkeypatch: pytest.MonkeyPatch, link: str, what: str

@@ -97,6 +97,7 @@ async def test_what_waits_when_a_process_ends_still_reaches_a_slow_reader(profil
         assert subscription.stats.lost == 0
 
 
+@pytest.mark.slow
 async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() -> None:
     """It still ends, and logs how many messages of which topic were given up."""
     async with asyncio.timeout(30), Context(link=True) as context, quiet_node("n", context) as node:

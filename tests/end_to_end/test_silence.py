@@ -81,7 +81,7 @@ class Driven:
                 assert published_ns >= stopped_ns - S // 1000  # the time that a call takes
 
 
-@pytest.fixture(params=["link", "zenoh"])
+@pytest.fixture(params=["link", pytest.param("zenoh", marks=pytest.mark.slow)])
 def route(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """The way in which commands reach the wheels."""
     monkeypatch.setenv("AIONODE_LINK", "on" if request.param == "link" else "off")
@@ -130,6 +130,7 @@ async def test_a_mover_that_is_frozen_stops_the_wheels(wheels: Node) -> None:
     driven.expect_no_late_command()
 
 
+@pytest.mark.slow
 async def test_a_frozen_mover_beside_another_is_no_silence(wheels: Node, route: str) -> None:
     """The topic is not silent; when the other one falls silent too, the wheels stop."""
     driven = Driven(wheels, 2.0)
@@ -188,6 +189,7 @@ async def command(publisher: object, for_s: float) -> None:
         await MACHINE.sleep(0.02)
 
 
+@pytest.mark.slow
 async def test_a_router_that_is_restarted_is_no_fault(tmp_path: Path) -> None:
     """Everyone behind it is out of reach, but not gone."""
     config = tmp_path / "client.json5"

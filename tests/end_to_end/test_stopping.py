@@ -74,7 +74,7 @@ def test_ctrl_c_stops_a_robot_that_is_run_by_one_line(monkeypatch: pytest.Monkey
     ("link", "end", "begin"),
     [
         ("on", "sleep", "line"),
-        ("off", "loop", "line"),
+        pytest.param("off", "loop", "line", marks=pytest.mark.slow),
         ("on", "await", "signal"),
         pytest.param("on", "loop", "line", marks=pytest.mark.stress),
         pytest.param("off", "sleep", "signal", marks=pytest.mark.stress),
@@ -122,7 +122,7 @@ def test_two_signals_a_few_milliseconds_apart_stop_a_robot(
 
 HOLDERS = [
     ("on", "sleep"),
-    ("off", "loop"),
+    pytest.param("off", "loop", marks=pytest.mark.slow),
     ("on", "shield"),
     pytest.param("off", "sleep", marks=pytest.mark.stress),
     pytest.param("on", "loop", marks=pytest.mark.stress),

@@ -301,6 +301,7 @@ def test_the_rover_has_a_page() -> None:
     assert "<html" in page.text
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.timeout(60)
 def test_without_the_extra_the_rover_says_what_its_page_needs() -> None:

@@ -117,7 +117,13 @@ async def test_a_bomb_for_rosbridge_is_answered(
         await still_served(client)
 
 
-@pytest.mark.parametrize("name", TAKEN)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name == "bytes as numbers" else name
+        for name in TAKEN
+    ],
+)
 async def test_a_large_message_of_a_client_leaves_the_loop_to_the_robot(
     gateway: Gateway, name: str
 ) -> None:
@@ -140,7 +146,13 @@ async def test_a_large_message_of_a_client_leaves_the_loop_to_the_robot(
         assert gateway.stats.refused == 0
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name == "texts for numbers" else name
+        for name in REFUSED
+    ],
+)
 async def test_a_bomb_over_http_is_answered(gateway: Gateway, name: str) -> None:
     """As the body of a message."""
     type_name, values, words = REFUSED[name]
@@ -168,7 +180,7 @@ FOXGLOVE_CDR = {
 }
 
 
-@pytest.mark.parametrize("encoding", ["json", "cdr"])
+@pytest.mark.parametrize("encoding", [pytest.param("json", marks=pytest.mark.slow), "cdr"])
 async def test_a_bomb_for_foxglove_is_answered(gateway: Gateway, encoding: str) -> None:
     """In binary frames, with messages in JSON or in CDR."""
     tries = [(kind, values.encode(), words) for kind, values, words in REFUSED.values()]

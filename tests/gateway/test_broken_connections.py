@@ -339,6 +339,7 @@ async def test_an_idle_connection_is_closed_after_its_answer() -> None:
         writer.close()
 
 
+@pytest.mark.slow
 async def test_five_hundred_silent_connections_keep_nobody_out() -> None:
     """Their number is limited, and a connection that sends a request replaces the oldest one."""
     limits = "clients = 4\nhandshake_sec = 30.0"
@@ -455,7 +456,9 @@ def tiny(kind: str) -> bytes:
     return frame(beginning, opcode) * 43_000
 
 
-@pytest.mark.parametrize("kind", ["pings", "frames", "parts", "chunks"])
+@pytest.mark.parametrize(
+    "kind", ["pings", "frames", "parts", pytest.param("chunks", marks=pytest.mark.slow)]
+)
 async def test_a_burst_of_tiny_parts_leaves_the_loop_to_the_robot(kind: str) -> None:
     """One read returns 40,000 of them, which take a parser most of a second."""
     data = tiny(kind)

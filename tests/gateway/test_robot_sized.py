@@ -31,6 +31,7 @@ def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [each.getMessage() for each in caplog.records if each.levelno == logging.WARNING]
 
 
+@pytest.mark.slow
 async def test_a_path_of_2000_poses_arrives(caplog: pytest.LogCaptureFixture) -> None:
     """A planner has more; rosbridge accepts 10 MB."""
     got: list[Path] = []

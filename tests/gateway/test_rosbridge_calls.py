@@ -74,6 +74,7 @@ async def test_a_call_is_answered(
     }
 
 
+@pytest.mark.slow
 async def test_an_answer_is_in_fragments_if_the_client_asks(client: RosbridgeClient) -> None:
     """For this call only: another one is answered in one piece."""
     service = "/rosapi/interfaces"

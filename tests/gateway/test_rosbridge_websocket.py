@@ -136,7 +136,7 @@ async def test_a_client_that_sends_garbage_is_disconnected(connect: Connect) -> 
     """Other clients are not: a browser does not send garbage a hundred times by mistake."""
     async with connect() as good, connect() as bad:
         with contextlib.suppress(websockets.ConnectionClosed):
-            for _ in range(1000):
+            for _ in range(120):
                 await bad.send("[" * 1000)
         await bad.wait_closed()
         await send(good, "call_service", service="/rosapi/get_ros_version")

@@ -414,6 +414,7 @@ def half(seen: dict[str, np.ndarray]) -> np.ndarray:
     return np.full((4, 1), 0.5 + (multiprocessing.parent_process() is not None))
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.one_loop
 async def test_a_function_may_run_in_another_process(robot: Robot) -> None:

@@ -209,6 +209,7 @@ def test_false_messages_are_left_out_and_told(tmp_path: Path, name: str) -> None
     assert 20 <= found.rows < 30
 
 
+@pytest.mark.slow
 def test_compressed_pictures_that_are_false_are_left_out(tmp_path: Path) -> None:
     """They are decoded when rows are there already: these are made again."""
     observations = contract().to_dict()["observations"]

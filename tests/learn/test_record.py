@@ -112,6 +112,7 @@ async def test_a_discarded_episode_is_gone(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["episode_0000"]
 
 
+@pytest.mark.slow
 async def test_an_error_in_the_block_is_a_failure_which_an_export_leaves_out(
     tmp_path: Path,
 ) -> None:

@@ -436,7 +436,7 @@ def e13_coroutines_wait_for_futures_and_for_bare_yields(trace: Trace) -> None:
     publisher, _ = matched_pair(node, "e13", callback)
     publisher.publish(Int32(data=13))
     timer = node.create_timer(0.3, lambda: (timer.cancel(), gate.set_result("key")))
-    rclpy.spin_until_future_complete(node, finished, timeout_sec=PATIENCE_S)
+    rclpy.spin_until_future_complete(node, finished, timeout_sec=2.0)  # which rclpy waits out
     trace("finished", finished.done())
 
 
@@ -914,7 +914,7 @@ def services_with_coroutines(trace: Trace) -> None:
     trace("ready", client.wait_for_service(10.0))
     future = client.call_async(ListParameters.Request(prefixes=["a"]))
     timer = node.create_timer(0.1, lambda: (timer.cancel(), gate.set_result(None)))
-    rclpy.spin_until_future_complete(node, future, timeout_sec=10.0)
+    rclpy.spin_until_future_complete(node, future, timeout_sec=2.0)  # as above
     trace("answer", list(future.result().result.names))
     broken = node.create_service(ListParameters, "broken", lambda request, response: None)
     other = node.create_client(ListParameters, "broken")

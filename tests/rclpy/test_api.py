@@ -518,9 +518,9 @@ if sys.argv[1] == "fail":
 @pytest.mark.parametrize(
     ("how", "number", "said", "status"),
     [
-        ("exit", None, "", 0),
+        pytest.param("exit", None, "", 0, marks=pytest.mark.slow),
         ("spin", signal.SIGINT, "spins\ninterrupted\nended False\n", 0),
-        ("spin", signal.SIGTERM, "spins\nended False\n", 0),
+        pytest.param("spin", signal.SIGTERM, "spins\nended False\n", 0, marks=pytest.mark.slow),
         ("fail", None, "spins\n", 1),
     ],
 )
@@ -569,6 +569,7 @@ print("ended", flush=True)
 """
 
 
+@pytest.mark.slow
 def test_a_signal_that_does_not_interrupt_a_wait_is_handled(tmp_path: Path) -> None:
     """One that comes just before the wait cannot be timed, so a thread gets it."""
     program = tmp_path / "sleeping.py"

@@ -76,7 +76,8 @@ def output_of(method: str, *options: str, cwd: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("method", ["spawn", pytest.param("forkserver", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
 def test_a_process_imports_what_the_program_imports(folder: Path, method: str) -> None:
     """So does a process that this one starts: with fork, none of them could use a context."""
     assert output_of(method, cwd=folder / "src/robot") == ANSWER * 2

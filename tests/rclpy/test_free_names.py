@@ -103,6 +103,7 @@ def modules_of(package: str) -> Iterator[Any]:
             yield importlib.import_module(found.name)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:importing 'qos_event' is deprecated")
 @pytest.mark.usefixtures("rclpy")
 @pytest.mark.parametrize("package", OF_ROS)

@@ -211,7 +211,7 @@ def test_validators_say_what_is_wrong() -> None:
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("build", ["cmake", "python"])
+@pytest.mark.parametrize("build", [pytest.param("cmake", marks=pytest.mark.slow), "python"])
 def test_a_program_imports_the_module_of_its_workspace(tmp_path: Path, build: str) -> None:
     """Found by the rule that would generate it, with validators of the package."""
     package = tmp_path / "arm"

@@ -135,6 +135,7 @@ def test_types_are_found_by_name() -> None:
         get_message("std_msgs/Nothing")
 
 
+@pytest.mark.slow
 def test_interfaces_are_listed() -> None:
     """Tools use them for completion."""
     assert "msg/String" in runtime.get_interfaces(["std_msgs"])["std_msgs"]

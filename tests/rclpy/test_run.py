@@ -351,6 +351,7 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
         assert module not in loaded
 
 
+@pytest.mark.slow
 def test_a_node_spins_without_numpy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first message with an array loads it; rclpy's own types have some, too."""
     for name, value in isolated_environment().items():

@@ -181,7 +181,14 @@ def test_a_client_that_is_first_gets_its_answer(start: Start) -> None:
 
 
 @needs_tutorial
-@pytest.mark.parametrize("example", [None, "simple_publisher.py", "simple_subscriber.py"])
+@pytest.mark.parametrize(
+    "example",
+    [
+        None,
+        pytest.param("simple_publisher.py", marks=pytest.mark.slow),
+        pytest.param("simple_subscriber.py", marks=pytest.mark.slow),
+    ],
+)
 def test_the_publisher_and_the_subscriber_of_the_tutorial(
     start: Start, example: str | None
 ) -> None:

@@ -84,7 +84,7 @@ def test_one_pose_a_hundred_times_is_one_pose() -> None:
 def test_a_translation_is_interpolated_along_a_line() -> None:
     """This holds for every time in between."""
     chance = random.Random(7)  # noqa: S311  # no secret
-    for _ in range(100):
+    for _ in range(10):
         one = frame()
         begin, end = ([chance.uniform(-10, 10) for _ in range(3)] for _ in range(2))
         one.insert(200, "p", (*begin, 0.0, 0.0, 0.0, 1.0))  # type: ignore[arg-type]

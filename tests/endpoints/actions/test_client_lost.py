@@ -716,7 +716,9 @@ async def test_a_node_that_fails_ends_properly(manual_clock: ManualClock) -> Non
 # Between contexts
 
 
-@pytest.mark.parametrize("link", [True, False], ids=["link", "zenoh"])
+@pytest.mark.parametrize(
+    "link", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["link", "zenoh"]
+)
 async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, link: bool) -> None:
     """A goal lives as long as its client sends signs of life, and ends when they stop."""
     for name, value in isolated_environment().items():

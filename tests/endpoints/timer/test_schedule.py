@@ -147,10 +147,10 @@ def test_every_call_is_planned_on_the_grid(period: int, start: int, steps: list[
     assert schedule.calls + schedule.skipped == (schedule.next_ns - start) // period - 1
 
 
-def test_a_million_calls_do_not_drift() -> None:
+def test_a_hundred_thousand_calls_do_not_drift() -> None:
     """The period may be one that no float can hold, with each call late by a different amount."""
     period, start = 33_333_333, 1_700_000_000_123_456_789
     schedule = Schedule(period, start)
-    for n in range(1, 1_000_001):
+    for n in range(1, 100_001):
         assert schedule.call(start + n * period + n % 1000) == start + n * period
     assert schedule.skipped == 0

@@ -9,6 +9,7 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from msgspec.structs import replace
 
 from aionode.engine.transport.link._manager import LinkManager
@@ -22,8 +23,6 @@ from tests.support.links import Counting, folder, link_of, manager_of, transport
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    import pytest
 
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._protocol import Control
@@ -73,6 +72,7 @@ async def test_making_and_destroying_endpoints_of_one_process_is_linear() -> Non
     assert median(destroyed[:20]) <= median(destroyed[-30:-10]) + 10
 
 
+@pytest.mark.slow
 async def test_making_and_destroying_endpoints_beside_links_is_linear() -> None:
     """No other endpoint of this process is looked at."""
     async with asyncio.timeout(30), two_nodes() as nodes:

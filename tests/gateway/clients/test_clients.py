@@ -95,7 +95,10 @@ def test_ros_mcp(roslibpy: str, port: str) -> None:
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("subprotocol", ["foxglove.websocket.v1", "foxglove.sdk.v1"])
+@pytest.mark.parametrize(
+    "subprotocol",
+    [pytest.param("foxglove.websocket.v1", marks=pytest.mark.slow), "foxglove.sdk.v1"],
+)
 def test_ws_protocol_of_npm(port: str, subprotocol: str) -> None:
     """Foxglove, Lichtblick and programs of Node use this library."""
     modules = given("AIONODE_FOXGLOVE")

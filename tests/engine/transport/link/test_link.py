@@ -372,6 +372,7 @@ async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() ->
         assert numbers.subscription.stats.lost == dropped
 
 
+@pytest.mark.slow
 async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_loses_nothing() -> None:
     """`drain` waits for the reader, and `publish` refuses messages beyond the limit."""
     async with two_nodes() as nodes:

@@ -55,7 +55,7 @@ def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
 
 
 @given(FRAMES, st.lists(st.integers(0, 10_000), max_size=12))
-@settings(max_examples=200)
+@settings(max_examples=50)
 def test_messages_go_straight_to_their_handlers_in_the_order_of_all_frames(
     frames: list[Frame], cuts: list[int]
 ) -> None:

@@ -181,6 +181,7 @@ async def test_a_router_that_cannot_tell_who_listens_is_taken_to_have_listeners(
         assert both.router.session is not before.session
 
 
+@pytest.mark.slow
 async def test_a_router_that_comes_back_is_asked_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is a different one, behind which other sessions may subscribe."""
     async with router(), linked(monkeypatch) as both:

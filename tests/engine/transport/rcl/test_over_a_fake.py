@@ -127,6 +127,7 @@ async def test_large_messages_arrive_in_order_with_the_small_ones(pair: Pair) ->
     assert [len((await reader.receive()).data) for _ in sizes] == sizes
 
 
+@pytest.mark.slow
 async def test_a_full_keep_all_subscription_leaves_messages_in_the_middleware(
     pair: Pair, rcl: FakeRcl
 ) -> None:

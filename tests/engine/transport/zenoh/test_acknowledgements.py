@@ -319,7 +319,11 @@ async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
     assert heard == [str(number) for number in range(5000)]
 
 
-@pytest.mark.parametrize("depth", [5000, 100], ids=["fits", "does not fit"])
+@pytest.mark.parametrize(
+    "depth",
+    [pytest.param(5000, marks=pytest.mark.slow), 100],
+    ids=["fits", "does not fit"],
+)
 async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_depth_is_dropped(
     depth: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

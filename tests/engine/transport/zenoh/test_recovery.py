@@ -592,6 +592,7 @@ async def test_an_unreachable_participant_is_given_up(comparisons: Comparisons) 
     assert times_found(comparisons, zid) == ATTEMPTS
 
 
+@pytest.mark.slow
 async def test_an_unreachable_participant_that_one_answer_lacks_is_given_up(
     comparisons: Comparisons, monkeypatch: pytest.MonkeyPatch
 ) -> None:

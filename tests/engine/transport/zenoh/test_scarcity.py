@@ -30,7 +30,9 @@ asyncio.run(main())
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("count", [8, 14, 17, 23, 29])
+@pytest.mark.parametrize(
+    "count", [8, 23, *(pytest.param(count, marks=pytest.mark.slow) for count in (14, 17, 29))]
+)
 def test_few_descriptors_are_an_error_that_names_the_limit(count: int) -> None:
     """Zenoh panics with some of these numbers, and aborts the process with others."""
 

@@ -109,6 +109,7 @@ def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("aionode.engine.transport.network.UDP_SOCKETS", Path("/nowhere"))
 
 
+@pytest.mark.slow
 async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
