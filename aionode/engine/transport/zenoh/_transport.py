@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     import socket
     from collections import Counter
     from collections.abc import Callable, Collection, Mapping
-    from collections.abc import Set as AbstractSet
 
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
@@ -103,7 +102,7 @@ class ZenohTransport(Transport):
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
-        self._dialled: AbstractSet[int] = frozenset()  # the ports of this machine's other sessions
+        self._dialled: set[int] = set()  # the ports of this machine's other sessions
         self._recovery = Recovery(
             self._state, network, self._watcher, partial(listed, network.meeting_ports[0])
         )
@@ -189,7 +188,9 @@ class ZenohTransport(Transport):
         self._recovery.start(session)
         self._stale_transports.start(session)
         self._stopped_peers.start(session)
-        await self._state.connections.wait_until_connected(expected, opened.others)
+        await self._state.connections.wait_until_connected(
+            expected, opened.others, self._unconnected
+        )
         # Configured peers may be absent, so they are not expected.
         self._expected = expected - bool(self.network.near_peers or self.network.config_file)
         answered = self._ask(session)
@@ -232,26 +233,35 @@ class ZenohTransport(Transport):
 
     def _is_connected(self) -> bool:
         """Return whether all peers that accept connections have been connected."""
-        return len(self._state.connections.kinds) >= self._expected and not self._unconnected()
+        return len(self._state.connections.kinds) >= self._expected and not self._silent_ports()
 
-    def _unconnected(self) -> set[int]:
+    def _silent_ports(self) -> set[int]:
         """Return the ports of those sessions of this machine that were dialled in vain.
 
         None, if there are as many connections as sessions: some may have dialled this one.
         """
+        unconnected = self._unconnected()
+        connected = len(self._state.connections.kinds)
+        return set() if connected >= len(self._listed_others()) else unconnected
+
+    def _unconnected(self) -> set[int]:
+        """Return the ports of the other sessions to which no connection was made."""
         session = self._state.session
-        there = (listed(self.network.meeting_ports[0]) or set()) & self._dialled
-        if session is None or len(self._state.connections.kinds) >= len(there):
+        if session is None:
             return set()
         pairs = map(pair_of, session.info.links())
-        return there - {pair.remote[1] for pair in pairs if pair is not None}
+        unconnected = self._dialled - {pair.remote[1] for pair in pairs if pair is not None}
+        return unconnected & self._listed_others() if unconnected else set()
+
+    def _listed_others(self) -> set[int]:
+        """Return the ports of this machine's other sessions that have not ended."""
+        return self._dialled & (listed(self.network.meeting_ports[0]) or set())
 
     def silent_processes(self) -> list[str]:
         """Describe the processes on this machine that do not answer, as far as the system knows."""
-        group = self.network.meeting_ports[0]
-        unconnected, found = self._unconnected(), processes(group)
+        unconnected, found = self._silent_ports(), processes(self.network.meeting_ports[0])
         silent = []
-        for port in sorted(self._dialled & (listed(group) or set())):
+        for port in sorted(self._listed_others()):
             process = found.get(port)
             if process is None:
                 if port in unconnected:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import sys
+from contextlib import closing
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,14 +13,18 @@ import pytest
 import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
 
 from aionode.clock import perf_ns
+from aionode.engine.context import Context
 from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.network import network_from
 from aionode.engine.transport.zenoh.connections import connections as _connections
 from aionode.engine.transport.zenoh.connections.connections import (
     MOMENT_NS,
     QUIET_S,
+    QUIETS,
     ConnectionChange,
     Connections,
 )
+from aionode.engine.transport.zenoh.session.local_sessions import announce
 
 pytestmark = pytest.mark.one_loop
 
@@ -126,3 +133,58 @@ async def test_no_further_peer_is_waited_for_when_all_are_connected(
     await connections.wait_until_connected(1, others)
 
     assert (QUIET_S in limits) is waits
+
+
+@pytest.mark.parametrize(
+    ("expected", "others"),
+    [(1, 2), (1, 1), (0, 1), (1, None)],
+    ids=["too few", "one is a client", "at no meeting port", "beside a router"],
+)
+async def test_a_listed_peer_is_waited_for_though_others_are_quiet(
+    expected: int, others: int | None, connections: Connections, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With 30 processes and a load of 10, three of five starts knew 21 to 28 of them."""
+    monkeypatch.setattr(_connections, "QUIET_S", 0.0)
+    looks = iter([True] * (QUIETS // 2) + [False] * 3)
+    tell(connections, "c3", zenoh.WhatAmI.CLIENT, is_made=True)
+    await connections.wait_until_connected(expected, others, lambda: next(looks))
+
+    assert True not in looks
+
+
+async def test_a_listed_peer_that_does_not_answer_is_given_up(connections: Connections) -> None:
+    """A frozen process does not delay every start by more than a quarter of a second."""
+    looks = 0
+
+    def is_missing() -> bool:
+        nonlocal looks
+        looks += 1
+        return True
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_connections, "QUIET_S", 0.0)
+        tell(connections, "a1", is_made=True)
+        await connections.wait_until_connected(1, 2, is_missing)
+
+    assert looks == QUIETS - 1
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
+async def test_the_listed_sessions_without_a_connection_are_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whatever else is connected: clients and probes come and go."""
+    missing: set[object] = set()
+    wait = Connections.wait_until_connected
+
+    async def note(self: Connections, expected: int, others: int, look: Any) -> None:
+        await wait(self, expected, others, look)
+        missing.add(frozenset(look()))
+
+    async with Context():
+        monkeypatch.setattr(Connections, "wait_until_connected", note)
+        with closing(announce(network_from(os.environ).meeting_ports[0], 4711)):
+            async with Context():
+                pass
+
+    assert missing == {frozenset({4711})}

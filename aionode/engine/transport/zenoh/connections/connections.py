@@ -35,6 +35,13 @@ QUIET_S: Final = 0.015
 """All peers are assumed to be connected after this long without a new one, in seconds, where their
 number is not known."""
 
+QUIETS: Final = 16
+"""How many times as long `open` waits for a further one that is known to be there: 0.24 s. They are
+counted, as a busy machine may not run this process for that long."""
+
+LISTED_S: Final = 3.0
+"""How long it waits for those in all, in seconds, however many connect one after another."""
+
 MOMENT_NS: Final = 10_000_000_000
 """Time after the loss of a connection in which what was declared over it may return."""
 
@@ -134,7 +141,9 @@ class Connections:
                 self.lost.clear()
             self.lost.add(change.zid)
 
-    async def wait_until_connected(self, expected: int, others: int | None = None) -> None:
+    async def wait_until_connected(
+        self, expected: int, others: int | None = None, missing: Callable[[], object] = bool
+    ) -> None:
         """Wait until `expected` peers, and others dialled meanwhile, are connected.
 
         Gives up if they do not connect in time, after about a second.
@@ -143,17 +152,25 @@ class Connections:
             expected: Number of peers that connect at once.
             others: Number of all peers, if it is known; otherwise those that come soon after one
                 another are waited for.
+            missing: Returns something true while a peer is known to be there, but not connected. It
+                may take half a millisecond, so it is called only if nothing else decides.
         """
-        if expected == 0:
+        if expected == 0 and not missing():
             return
         try:
             while (count := len(self.kinds)) < expected:
                 async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
                     await self._next()
-            async with asyncio.timeout(FIRST_LINK_S):
-                while others is None or len(self.kinds) < others:
-                    async with asyncio.timeout(QUIET_S):
-                        await self._next()
+            async with asyncio.timeout(FIRST_LINK_S if others is None else LISTED_S):
+                quiet = 0
+                while others is None or len(self.kinds) < others or missing():
+                    count = len(self.kinds)
+                    with suppress(TimeoutError):
+                        async with asyncio.timeout(QUIET_S):
+                            await self._next()
+                    quiet = 0 if len(self.kinds) > count else quiet + 1
+                    if quiet and (quiet == QUIETS or not missing()):
+                        return
         except TimeoutError:
             return
 

@@ -39,7 +39,6 @@ from aionode.errors import TransportError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from collections.abc import Set as AbstractSet
 
     from aionode.engine.transport.network import Network
 
@@ -233,7 +232,7 @@ class Opened(Struct, frozen=True):
     session: zenoh.Session
     expected: int
     presence: socket.socket | None
-    dialled: AbstractSet[int] = frozenset()
+    dialled: set[int] = set()
     others: int | None = None
 
     def close(self) -> None:
