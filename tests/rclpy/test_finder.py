@@ -127,6 +127,25 @@ def test_the_names_of_rclpy_are_not_those_of_what_installs_it(name: str) -> None
         getattr(aionode.rclpy, name)
 
 
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "from aionode.rclpy.node import Node",
+        "from aionode.rclpy import init",
+        "import aionode.rclpy.qos",
+    ],
+)
+def test_imports_of_rclpys_names_from_what_installs_it_say_where_they_are(
+    statement: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs written for the first versions have them, and a reader may guess them."""
+    finder = aionode.rclpy.MisplacedNames()  # another test may have restored sys.meta_path
+    monkeypatch.setattr(sys, "meta_path", [*sys.meta_path, finder])
+
+    with pytest.raises(ModuleNotFoundError, match=r"call aionode.rclpy.install\(\), then import"):
+        exec(statement)  # noqa: S102  # a text of this file
+
+
 @pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize(
     ("name", "problem"),
