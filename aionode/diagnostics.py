@@ -201,7 +201,7 @@ class Heartbeat(DiagnosticTask):
         super().__init__("Heartbeat")
 
     def run(self, stat: Any) -> Any:
-        """Say so."""
+        """Report that the node is alive."""
         stat.summary(OK, "Alive")
         return stat
 

@@ -387,7 +387,7 @@ class Synchronizer(SimpleFilter):
 
 
 def act_for(pairs: Iterable[tuple[Any, tuple[Run, ...]]]) -> None:
-    """Have what is sent from now on be caused by the runs that brought several messages."""
+    """Make the runs that brought several messages the cause of what is sent from now on."""
     add_cause(*dict.fromkeys(run for _, runs in pairs for run in runs))
 
 

@@ -124,7 +124,7 @@ class LastMessages:
         self.failure = ""
 
     def send(self, frame: FrameType | None) -> bool:
-        """Send them, and leave other threads the rest of the time.
+        """Send the messages, and leave other threads the rest of the time.
 
         Args:
             frame: What the signal interrupted.

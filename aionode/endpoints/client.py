@@ -196,7 +196,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             exchange.cancel()
 
     def _note_answer(self, exchange: Exchange) -> None:
-        """Have what the current task sends from now on be caused by an answer too."""
+        """Count an answer among the causes of what the current task sends from now on."""
         answer = exchange.answer
         if self._causes is None or not answer.done() or answer.cancelled():
             return

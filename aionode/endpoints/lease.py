@@ -71,7 +71,7 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
         """
 
     def _let_go(self) -> None:
-        """Let `publish` publish again."""
+        """Allow `publish` again."""
 
     def _publish_leased(self, msg: LeasedT_contra | bytes | bytearray | memoryview) -> None:
         """Publish a command."""

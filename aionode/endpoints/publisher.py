@@ -282,7 +282,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         )
 
     def _let_go(self) -> None:
-        """Let `publish` publish again, as the lease has ended."""
+        """Allow `publish` again, as the lease has ended."""
         self._lease = None
         self._writers = self._ready_writers
 

@@ -581,7 +581,7 @@ class Context:
     # For nodes
 
     def add_reporter(self, node: object, report: Callable[[], NodeReport]) -> Callable[[], None]:
-        """Have reports of this context tell of a node; returns a function that ends that."""
+        """Include a node in the reports of this context; return a function that removes it."""
         self._reporters[node] = report
 
         def end() -> None:

@@ -71,7 +71,7 @@ async def call_with_bad_request(client: AdderClient) -> None:
 
 
 async def call_without_server(client: AdderClient) -> None:
-    """Let the call time out, since no server answers."""
+    """Call a service without a server, so that the call times out."""
     try:
         await client.call(AddTwoInts.Request(a=2, b=3), timeout_sec=0.5)
     except TimeoutError as error:

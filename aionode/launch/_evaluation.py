@@ -181,7 +181,7 @@ def load_file(path: str) -> tuple[Any, Callable[..., Any] | None]:
 
 @contextmanager
 def prefix_path() -> Iterator[None]:
-    """Let launch files that read AMENT_PREFIX_PATH find a path, as where ROS 2 is sourced.
+    """Set AMENT_PREFIX_PATH for launch files that read it, as a sourced ROS 2 does.
 
     Without ROS 2, packages are installed with Python. What is started does not get the variable,
     which would say that ROS 2 is sourced.

@@ -196,7 +196,7 @@ class Gate(SimpleManagedEntity):
         self._watch: SilenceWatch | None = None
 
     def guard(self, watch: SilenceWatch) -> None:
-        """Have a subscription watch for silence only while enabled."""
+        """Watch a subscription for silence only while it is enabled."""
         self._watch = watch
         watch.enable(enabled=self.is_activated)
 

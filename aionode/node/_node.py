@@ -211,7 +211,7 @@ class Node(ParameterMethods, GraphQueries):
         core.constructed = True
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Have the constructor of each subclass remove the node from its context if it raises."""
+        """Wrap the constructor of each subclass: if it raises, the node leaves its context."""
         super().__init_subclass__(**options)
         if "__init__" in vars(cls):
             cls.__init__ = destroying_on_error(cls.__init__)  # type: ignore[method-assign]

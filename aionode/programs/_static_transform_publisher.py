@@ -110,7 +110,7 @@ class Given:
         return cls(translation, rotation, frame_id, child_frame_id, bool(others))
 
     def parameters(self) -> list[Parameter]:
-        """Return it as the parameters of `DEFAULTS`."""
+        """Return the transform as the parameters of `DEFAULTS`."""
         values = *self.translation, *self.rotation, self.frame_id, self.child_frame_id
         return [Parameter(name, value=value) for name, value in zip(DEFAULTS, values, strict=True)]
 

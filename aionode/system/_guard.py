@@ -262,7 +262,7 @@ class Guard:
         self._loop.remove_writer(self._link)
 
     def _kill_at_sudden_end(self, _ends_ns: int) -> bool:
-        """Have every process killed when a second signal ends this process at once."""
+        """Kill every process when a second signal ends this process at once."""
         if self._orphans is not None:
             self._orphans.kill()
         with contextlib.suppress(OSError):

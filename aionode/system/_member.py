@@ -175,13 +175,13 @@ class Member:
     # Defined by subclasses
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
-        """Start it, call `note_running`, and return how it ended; end it when `stop` is set."""
+        """Start the member, call `note_running`, and return how it ended. `stop` ends it."""
         raise NotImplementedError
 
     # Control
 
     def start(self) -> None:
-        """Start it, unless it is running or the system is ending."""
+        """Start the member, unless it is running or the system is ending."""
         if not self.host.closing and (self._work is None or self._work.done()):
             self._stop = asyncio.Event()
             self.run = Run()
@@ -189,7 +189,7 @@ class Member:
             self._work = self.host.tasks.create_task(self._supervise(), name=f"member {self.name}")
 
     async def stop(self) -> None:
-        """Stop it, and wait until nothing of it is left."""
+        """Stop the member, and wait until nothing of it is left."""
         if self._work is None or self._work.done():
             if self.state != "stopped" and not self.host.closing:
                 self.set_state("stopped")
@@ -203,7 +203,7 @@ class Member:
         await asyncio.wait([self._work])
 
     async def restart(self) -> None:
-        """Stop it and start it again; return once it is starting."""
+        """Stop the member and start it again; return once it is starting."""
         self._restarting = True
         try:
             await self.stop()

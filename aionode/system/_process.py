@@ -94,7 +94,7 @@ class ProcessMember(Member):
         self.process = process
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
-        """Start it, and wait until none of its processes is left."""
+        """Start the program, and wait until none of its processes is left."""
         pipes: list[int] = []
         try:
             pipes, program = self._start()
@@ -131,7 +131,7 @@ class ProcessMember(Member):
             self._processes.reader.remove(pipe)
 
     def _start(self) -> tuple[list[int], RunningProgram]:
-        """Start it; return its output pipes and the program.
+        """Start the program; return its output pipes and what runs.
 
         Both streams share one pipe, which keeps the order of their lines, unless they have to be
         told apart.

@@ -72,7 +72,7 @@ class MemberStatus:
     error: str
 
     def record(self) -> dict[str, Any]:
-        """Return it as JSON-compatible values."""
+        """Return the status as JSON-compatible values."""
         return asdict(self)
 
 

@@ -456,7 +456,7 @@ class CausalReader(SubscriptionReader):
         return arrived.item
 
     def note_silence(self) -> None:
-        """Have what the current task sends from now on be caused by a silence of the topic."""
+        """Make a silence of the topic the cause of what the current task sends from now on."""
         self._log.begin(
             Party("silence", self._party.node, self.endpoint.name, self.endpoint.gid),
             "timer",

@@ -59,12 +59,12 @@ class SimpleManagedEntity(ManagedEntity):
         return self._SimpleManagedEntity__activated
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # as inherited
-        """Enable it."""
+        """Enable the entity."""
         self._SimpleManagedEntity__activated = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
-        """Disable it."""
+        """Disable the entity."""
         self._SimpleManagedEntity__activated = False
         return TransitionCallbackReturn.SUCCESS
 

@@ -248,7 +248,7 @@ class StopSender(PartOfTransport, ABC):
 
     @abstractmethod
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it, on the event loop's thread; called once.
+        """Send the stop, on the event loop's thread; called once.
 
         It is also called after `send_past_loop`, with the same numbers, as soon as the loop runs
         again: for the readers that only the loop reaches, and to resend what was lost. Readers that
@@ -256,13 +256,13 @@ class StopSender(PartOfTransport, ABC):
         """
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:  # as in `local`
-        """Send it to other processes from any thread, while the loop's thread is busy elsewhere.
+        """Send the stop to other processes from any thread, while the loop's thread is busy.
 
         That thread may be anywhere, except in a call of this writer by its publisher.
         """
 
     def repeat(self) -> None:  # most lose nothing
-        """Send it once more, with the same number, where it may be dropped; from any thread.
+        """Send the stop once more, with the same number, where it may be lost; any thread.
 
         The caller does so for a moment after `send_past_loop`. After `send` alone, the writer takes
         care of that itself, and does not end before.
@@ -282,7 +282,7 @@ class MessageStop(StopSender):
         self._stop = stop
 
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it, if any reader wants it."""
+        """Send the stop, if any reader wants it."""
         if self._writer.active:
             self._writer.write(self._stop, sequence, source_ns)
 

@@ -279,7 +279,7 @@ class LocalStop(StopSender):
         self._stop = stop
 
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it."""
+        """Send the stop."""
         self._writer.write_stop(self._stop, sequence, source_ns)
 
 

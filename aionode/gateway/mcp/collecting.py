@@ -99,7 +99,7 @@ class Numbers:
         self.total += float(finite.sum())
 
     def summary(self) -> dict[str, Any]:
-        """Return them as JSON has them."""
+        """Return the statistics as JSON-compatible values."""
         if not self.count:
             return {"finite_numbers": 0}
         values: dict[str, Any] = {

@@ -65,7 +65,7 @@ class Tool:
     run: Run
 
     def listed(self) -> types.Tool:
-        """Return it in the form that clients receive."""
+        """Return the tool in the form that clients receive."""
         hints = HINTS[self.kind]
         annotations = types.ToolAnnotations(
             title=self.name.replace("_", " "),

@@ -43,7 +43,7 @@ class Motion:
         self._began_ns = session.steady_ns()
 
     def end(self, by: str) -> None:
-        """End it at the next iteration of the event loop."""
+        """End the motion in the next iteration of the event loop."""
         self.stopped_by = by
         self._cut.set()
 
@@ -87,7 +87,7 @@ class Motions:
         self._motions: dict[Motion, None] = {}
 
     def __iter__(self) -> Iterator[Motion]:
-        """Iterate over them."""
+        """Iterate over the motions."""
         return iter(list(self._motions))
 
     @contextmanager

@@ -25,7 +25,7 @@ class Served:
         self.on_close: Callable[[], object] = bool
 
     def close(self) -> None:
-        """End it."""
+        """End the offer."""
         self._entity.destroy()
         self.on_close()
 

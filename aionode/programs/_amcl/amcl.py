@@ -362,7 +362,7 @@ class Amcl(LifecycleNode):
         await self.use(scan)
 
     async def use(self, scan: LaserScan) -> None:
-        """Let a scan judge the particles, if the robot has moved."""
+        """Weigh the particles by a scan, if the robot has moved."""
         if not self.is_active:
             return
         if self.field is None:

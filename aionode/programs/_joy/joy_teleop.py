@@ -170,7 +170,7 @@ class Command:
         )
 
     def run(self, joy: Joy, *, is_new: bool) -> None:
-        """Do it, if it is active; `is_new` if it was not at the last message."""
+        """Carry out the command if it is active; `is_new` if it was not at the last message."""
         raise NotImplementedError
 
 

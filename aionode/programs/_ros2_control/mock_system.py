@@ -56,7 +56,7 @@ class MockSystem:
                 self.modes[joint] = mode
 
     def read(self, period_sec: float) -> None:
-        """Let the states follow the commands for a period."""
+        """Move the states towards the commands for one period."""
         if self.is_deaf:
             return
         for name in self.copied:

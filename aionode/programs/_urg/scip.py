@@ -49,7 +49,7 @@ class Link(Protocol):
         """Send bytes."""
 
     def close(self) -> None:
-        """Close it."""
+        """Close the connection."""
 
 
 class Socket:

@@ -251,7 +251,7 @@ class UrgNode(Node):
         )
 
     async def start(self, scip: Scip, window: Window, skip: int) -> None:
-        """Have the lidar send scans.
+        """Start the lidar's scans.
 
         Raises:
             OSError: It does not.
@@ -339,7 +339,7 @@ class UrgNode(Node):
         self.frequency.tick()
 
     async def on_update_laser_status(self, _: Any, response: Any) -> Any:
-        """Ask the lidar how it is."""
+        """Request the lidar's status."""
         self.get_logger().info("Got update lidar status callback")
         response.message = "Failed to update status"
         if self.scip is not None and self.is_started:

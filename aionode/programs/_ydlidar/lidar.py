@@ -197,7 +197,7 @@ class Lidar:
             self.logger.warning("The lidar does not answer all commands; it is used as it is")
 
     async def check_health(self) -> None:
-        """Say whether it is well.
+        """Log the lidar's health status.
 
         Raises:
             OSError: The port is gone.

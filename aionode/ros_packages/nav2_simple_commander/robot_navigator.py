@@ -192,7 +192,7 @@ class BasicNavigator(Node):
         return self._begin("drive_on_heading_client", goal, "Drive On Heading request")
 
     def assistedTeleop(self, time_allowance: int = 30) -> bool:
-        """Have somebody steer, and Nav2 stop before obstacles."""
+        """Start teleoperation in which Nav2 stops the robot before obstacles."""
         self.info("Wait for handling the request...")
         goal = action.AssistedTeleop.Goal(time_allowance=DurationMsg(sec=time_allowance))
         return self._begin("assisted_teleop_client", goal, "Assisted Teleop request")
@@ -231,7 +231,7 @@ class BasicNavigator(Node):
         return self._begin("undocking_client", goal, "Undocking request")
 
     def cancelTask(self) -> None:
-        """Have Nav2 end the task, and wait until it agrees."""
+        """Request that Nav2 cancel the task, and wait until it agrees."""
         self.info("Canceling current task.")
         if self.result_future:
             rclpy.spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
@@ -306,7 +306,7 @@ class BasicNavigator(Node):
         return self._path("smoother_client", request, "Smooth path", "Smoothing path")
 
     def changeMap(self, map_filepath: str) -> None:
-        """Have the map server load another map."""
+        """Request that the map server load another map."""
         response = self._ask("change_maps_srv", srv.LoadMap.Request(map_url=map_filepath))
         if response.result != srv.LoadMap.Response.RESULT_SUCCESS:
             self.error("Change map request failed!")
@@ -350,13 +350,13 @@ class BasicNavigator(Node):
         return self._ask("get_costmap_local_srv", srv.GetCostmap.Request()).map
 
     def lifecycleStartup(self) -> None:
-        """Have the lifecycle managers start their nodes."""
+        """Request that the lifecycle managers start their nodes."""
         self.info("Starting up lifecycle nodes based on lifecycle_manager.")
         self._manage("Starting up", srv.ManageLifecycleNodes.Request.STARTUP)
         self.info("Nav2 is ready for use!")
 
     def lifecycleShutdown(self) -> None:
-        """Have the lifecycle managers end their nodes."""
+        """Request that the lifecycle managers shut down their nodes."""
         self.info("Shutting down lifecycle nodes based on lifecycle_manager.")
         self._manage("Shutting down", srv.ManageLifecycleNodes.Request.SHUTDOWN)
 

@@ -162,6 +162,6 @@ class SignalHandlerGuardCondition(GuardCondition):
             self.destroy()
 
     def destroy(self) -> None:
-        """Destroy it."""
+        """Destroy the guard condition."""
         guards.pop(id(self.handle), None)
         super().destroy()

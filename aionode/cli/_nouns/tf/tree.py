@@ -43,7 +43,7 @@ class FrameEdge:
     age_sec: float
 
     def record(self) -> dict[str, Any]:
-        """Return it as a record."""
+        """Return the transform as a record."""
         return asdict(self)
 
     def facts(self) -> str:

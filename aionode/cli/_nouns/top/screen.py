@@ -352,7 +352,7 @@ class Field:
             self._problem = str(error)
 
     def show(self, plot: Sparkline, of: Static) -> None:
-        """Draw it."""
+        """Draw the plot, with its newest value."""
         plot.data = [value for value in self._values if math.isfinite(value)]
         newest = f"{self._values[-1]:.6g}" if self._values else self._problem
         of.update(Text(escaped(f"{self._name}: {newest}   (f plots rates again)")))

@@ -241,7 +241,7 @@ def notes(rates: Rates) -> list[str]:
 
 
 def record_of(rates: Rates) -> dict[str, Any]:
-    """Return everything as a record."""
+    """Return all tables as one record."""
     record: dict[str, Any] = {
         name: [dict(zip(table.columns, row, strict=True)) for _, row in table.in_order()]
         for name, table in tables_of(rates).items()
@@ -255,7 +255,7 @@ def shown(value: object) -> str:
 
 
 def text_of(rates: Rates) -> str:
-    """Return everything as text."""
+    """Return all tables as text."""
     parts = []
     for table in tables_of(rates).values():
         if not table.rows:

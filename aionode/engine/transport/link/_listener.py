@@ -84,7 +84,7 @@ class Advertisement(Struct, frozen=True):
         return cls(participant, VERSION, host_id(), os.getuid())
 
     def text(self) -> str:
-        """Return it as the last chunks of a key, without wildcards."""
+        """Return the advertisement as the last chunks of a key, without wildcards."""
         return f"{self.participant}/link/{self.version}/{self.host}/{self.uid}"
 
     @classmethod

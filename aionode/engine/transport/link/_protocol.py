@@ -178,7 +178,7 @@ class BufferRef(msgspec.Struct, frozen=True):
     """Size of the payload in bytes."""
 
     def pack(self) -> bytes:
-        """Return it as the payload of a frame."""
+        """Return the reference as the payload of a frame."""
         return BUFFER_REF.pack(self.number, self.start, self.size)
 
     @classmethod

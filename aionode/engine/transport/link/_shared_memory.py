@@ -112,7 +112,7 @@ class SharedBuffer:
         return self._map[self.start : self.start + size]
 
     def close(self) -> None:
-        """Close it; processes that have mapped it can still read it."""
+        """Unmap the buffer; processes that have mapped it can still read it."""
         self._map.close()
         os.close(self.fd)
 

@@ -39,7 +39,7 @@ class LinkStop(StopSender):
         self._frame = b""  # for other contexts, once it was sent while the loop was blocked
 
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it."""
+        """Send the stop."""
         routes = self._routes
         payload, pool = self._payload, routes.registry.pool
         buffer = None
@@ -61,14 +61,14 @@ class LinkStop(StopSender):
             self._zenoh.send(sequence, source_ns)
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:
-        """Send it only over Zenoh."""
+        """Send the stop over Zenoh only."""
         for connection in list(self._routes.send_queues):
             self._post(connection, sequence, source_ns)
         if self._routes.needs_zenoh:
             self._zenoh.send_past_loop(sequence, source_ns)
 
     def repeat(self) -> None:
-        """Send it over Zenoh once more."""
+        """Send the stop over Zenoh once more."""
         if self._frame:
             for connection in list(self._routes.send_queues):
                 self._routes.registry.post(connection, self._frame)

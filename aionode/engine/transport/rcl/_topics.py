@@ -224,12 +224,12 @@ class RclStop(StopSender):
         self._past = 0  # its number, once it was sent while the loop was blocked
 
     def send(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS has its own
-        """Send it, unless that was done while the loop was blocked."""
+        """Send the stop, unless that was done while the loop was blocked."""
         if sequence != self._past and self._writer.active:
             self._writer.write_stop(self._payload)
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # the same
-        """Send it."""
+        """Send the stop."""
         self._past = sequence
         self._writer.put_stop(self._payload)
 

@@ -132,25 +132,25 @@ class RclTransport(Transport):
         self._state.close()
 
     def create_node(self, node: NodeInfo) -> Registration:
-        """Make a node."""
+        """Create a node."""
         return RclNode(self._state, node)
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
-        """Make a publisher."""
+        """Create a publisher."""
         return RclWriter(self._state, endpoint, msg_type)
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Make a subscription."""
+        """Create a subscription."""
         return RclReader(self._state, endpoint, msg_type, reader)
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
-        """Make a server."""
+        """Create a server."""
         return RclServer(self._state, endpoint, srv_type, serve)
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
-        """Make a client."""
+        """Create a client."""
         return RclRequester(self._state, endpoint, srv_type)
 
 
@@ -163,5 +163,5 @@ class RclNode(Registration):
         state.add_node(info)
 
     def close(self) -> None:
-        """Destroy it."""
+        """Destroy the node."""
         self._state.remove_node(self._info)

@@ -36,7 +36,7 @@ class SetEnvironmentVariable(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it the value."""
+        """Set the variable."""
         value = perform_substitutions(context, self.value)
         context.environment[perform_substitutions(context, self.name)] = value
 
@@ -49,7 +49,7 @@ class UnsetEnvironmentVariable(Action):
         self.name = normalize_to_list_of_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the variable."""
         context.environment.pop(perform_substitutions(context, self.name), None)
 
 

@@ -68,7 +68,7 @@ class LogInfo(Action):
         self.msg = normalize_to_list_of_substitutions(msg)
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it."""
+        """Log the text."""
         context.steps.append(Log(perform_substitutions(context, self.msg), self._LogInfo__level))
 
 

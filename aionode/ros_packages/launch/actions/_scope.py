@@ -88,7 +88,7 @@ class SetLaunchConfiguration(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it the value."""
+        """Set the launch configuration."""
         name = perform_substitutions(context, self.name)
         context.launch_configurations[name] = perform_substitutions(context, self.value)
 
@@ -101,7 +101,7 @@ class UnsetLaunchConfiguration(Action):
         self.name = normalize_to_list_of_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the launch configuration."""
         context.launch_configurations.pop(perform_substitutions(context, self.name), None)
 
 
@@ -109,7 +109,7 @@ class PushLaunchConfigurations(Action):
     """Saves the launch configurations."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Save them."""
+        """Save the launch configurations."""
         context.push_launch_configurations()
 
 
@@ -117,7 +117,7 @@ class PopLaunchConfigurations(Action):
     """Restores the launch configurations that were saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore them."""
+        """Restore the launch configurations."""
         context.pop_launch_configurations()
 
 
@@ -133,7 +133,7 @@ class ResetLaunchConfigurations(Action):
         self._ResetLaunchConfigurations__launch_configurations = dict(launch_configurations or {})
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove the others."""
+        """Remove the other launch configurations."""
         kept = {
             text_of(context, name): text_of(context, value)
             for name, value in self._ResetLaunchConfigurations__launch_configurations.items()
@@ -194,7 +194,7 @@ class OpaqueFunction(Action):
         self._OpaqueFunction__kwargs = dict(kwargs or {})
 
     def execute(self, context: LaunchContext) -> Any:
-        """Call it."""
+        """Call the function."""
         context.need_present(self.describe())
         return self._OpaqueFunction__function(
             context, *self._OpaqueFunction__args, **self._OpaqueFunction__kwargs

@@ -93,7 +93,7 @@ class PushLocals(Action):
         self.values = values
 
     def execute(self, context: LaunchContext) -> None:
-        """Save it."""
+        """Save the locals, and add the values."""
         context.push_locals()
         context.extend_locals(self.values)
 
@@ -102,5 +102,5 @@ class PopLocals(Action):
     """Restores the locals that were saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore them."""
+        """Restore the locals."""
         context.pop_locals()

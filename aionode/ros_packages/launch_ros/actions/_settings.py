@@ -58,7 +58,7 @@ class SetParameter(Action):
         self.value = value
 
     def execute(self, context: LaunchContext) -> None:
-        """Add it."""
+        """Add the parameter."""
         name = perform_substitutions(context, self.name)
         add(context, "global_params", list(evaluate_values(context, {name: self.value}).items()))
 
@@ -71,7 +71,7 @@ class SetParametersFromFile(Action):
         self._SetParametersFromFile__filename = normalize_to_list_of_substitutions(filename)
 
     def execute(self, context: LaunchContext) -> None:
-        """Add it."""
+        """Add the parameter file."""
         add(
             context,
             "global_params",
@@ -98,7 +98,7 @@ class SetRemap(Action):
         self.dst = normalize_to_list_of_substitutions(dst)
 
     def execute(self, context: LaunchContext) -> None:
-        """Add it."""
+        """Add the remapping rule."""
         pair = perform_substitutions(context, self.src), perform_substitutions(context, self.dst)
         add(context, "ros_remaps", [pair])
 

@@ -76,7 +76,7 @@ class ExecutableInPackage(Substitution):
         )
 
     def _ExecutableInPackage__command(self, context: LaunchContext) -> list[str]:
-        """Return the command that starts it."""
+        """Return the command that starts the executable."""
         return context.packages.command(*self._ExecutableInPackage__names(context))
 
     def perform(self, context: LaunchContext) -> str:

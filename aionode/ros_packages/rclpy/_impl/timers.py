@@ -39,7 +39,7 @@ class GuardConditionHandle(Destroyable):
         self._triggered = False  # set by any thread, reset by the one that takes it
 
     def trigger_guard_condition(self) -> None:
-        """Trigger it; any thread may do that."""
+        """Trigger the guard condition, from any thread."""
         self._triggered = True
         self.signal.notify()
 

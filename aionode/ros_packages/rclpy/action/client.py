@@ -82,7 +82,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def accepted(self) -> bool:
-        """Whether the server accepted it."""
+        """Whether the server accepted the goal."""
         accepted: bool = self._goal_response.accepted
         return accepted
 
@@ -100,11 +100,11 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
-        """Request its result; block until it arrives, while another thread spins."""
+        """Request the goal's result; block until it arrives, while another thread spins."""
         return blocked(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
-        """Request its result; return a future for it."""
+        """Request the goal's result; return a future for it."""
         return self._action_client._get_result_async(self)
 
 
@@ -251,7 +251,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         return any(part.ready() for part in self._ActionEntity__handle.parts)
 
     def take_data(self) -> dict[str, Any]:
-        """Take one of each."""
+        """Take one item of each kind that is ready."""
         handle = self._ActionEntity__handle
         data: dict[str, Any] = {}
         with self._lock:

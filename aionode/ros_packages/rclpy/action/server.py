@@ -150,15 +150,15 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._update_state(GoalEvent.EXECUTE)
 
     def succeed(self, response: Any = None) -> None:
-        """End it successfully; newer rclpy may pass the result here."""
+        """End the goal as succeeded; newer rclpy may pass the result here."""
         self._end(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """Abort it; newer rclpy may pass the result here."""
+        """End the goal as aborted; newer rclpy may pass the result here."""
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """End it as canceled; newer rclpy may pass the result here."""
+        """End the goal as canceled; newer rclpy may pass the result here."""
         self._end(GoalEvent.CANCELED, response)
 
     def _end(self, event: GoalEvent, response: Any) -> None:
@@ -414,7 +414,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         )
 
     def take_data(self) -> dict[str, Any]:
-        """Take one of each."""
+        """Take one item of each kind that is ready."""
         handle = self._handle
         data: dict[str, Any] = {}
         with self._lock:

@@ -304,7 +304,7 @@ class ZenohWriter(Declaration, Writer):
         self.sender.note_others(present=history is None or history.has_other_readers)
 
     def note_crowd(self) -> None:
-        """Let the thread for large messages send everything while Zenoh may block."""
+        """Send everything from the thread for large messages while Zenoh may block."""
         self.sender.update()
 
     def assert_liveliness(self) -> None:

@@ -39,7 +39,7 @@ class StoppableWriter(Protocol):
         """Keep a message for late readers until the session is open."""
 
     def watch_stop(self, stop: ZenohStop) -> None:
-        """Have `tick` called while there may be readers that do not acknowledge."""
+        """Call `tick` regularly while there may be readers that do not acknowledge."""
 
 
 class ZenohStop(StopSender):
