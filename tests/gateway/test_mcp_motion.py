@@ -214,7 +214,7 @@ async def test_stop_may_be_called_again_and_without_any_right(era: str) -> None:
 @pytest.mark.parametrize("what", ["move", "goal"])
 async def test_stop_ends_the_motion_of_others_by_the_policys_word_only(what: str) -> None:
     """Otherwise the answer says who moves; if allowed, the other's call ends."""
-    driver = POLICY.replace('name = "other"\ntoken', 'name = "driver"\ntoken')
+    driver = PATIENT.replace('name = "other"\ntoken', 'name = "driver"\ntoken')
     async with bench_of(driver, over_http=True) as bench:
         client = await bench.connect()
         headers = {"Authorization": "Bearer of-another"}
@@ -391,6 +391,7 @@ async def another_assistant(bench: Bench, policy: str = PATIENT) -> AsyncIterato
 
 async def test_one_mover_at_a_time(assisted: Bench, era: str) -> None:
     """The second is told who moves, and the first continues."""
+    assisted.use(PATIENT)
     first, second = await assisted.connect(era), await assisted.connect(era)
     async with asyncio.TaskGroup() as tasks:
         moving = tasks.create_task(first.call_tool(MOVE[0], {**MOVE[1], "seconds": 1}))

@@ -354,8 +354,9 @@ async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
     """The figure only contains what the program can fix."""
 
     def sleepy(msg: Int32) -> None:
-        threading.Event().wait(0.1)
-        processor.waited_ns += 60_000_000
+        began_ns = perf_ns()
+        threading.Event().wait(0.2)
+        processor.waited_ns += perf_ns() - began_ns - 40_000_000
 
     async with Node("node", context=context, callback_budget_ms=10) as node:
         listen(node, sleepy)
@@ -364,7 +365,7 @@ async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
 
     found = re.search(r"blocked the event loop for (\d+\.\d) ms", capfd.readouterr().err)
     assert found is not None
-    assert 30 < float(found[1]) < 60
+    assert 30 < float(found[1]) < 150  # a busy machine adds to it
 
 
 @pytest.fixture
