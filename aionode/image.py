@@ -46,12 +46,12 @@ FORMATS: Final = ("BMP", "JPEG", "PNG", "TIFF", "WEBP")
 
 RVL_HEAD: Final = struct.Struct("<II")
 """The width and height before an RVL picture."""
-MOST_PIXELS: Final = 2**23
+MAX_PIXELS: Final = 2**23
 """Maximum pixels of an RVL picture, as a few bytes can stand for any number of zeros; no depth
 camera has as many pixels.
 """
-MOST_NIBBLES: Final = 9
-"""Maximum nibbles of a number: enough for `MOST_PIXELS` zeros."""
+MAX_NIBBLES: Final = 9
+"""Maximum nibbles of a number: enough for `MAX_PIXELS` zeros."""
 BLOCK_BYTES: Final = 2**16
 """How many bytes of RVL are unpacked at a time."""
 
@@ -442,13 +442,13 @@ def depths_of_rvl(
     """
     wrong = MessageError(
         "sensor_msgs/msg/CompressedImage.data",
-        f"not an RVL picture of at most {MOST_PIXELS} pixels; its format is given as {format!r}",
+        f"not an RVL picture of at most {MAX_PIXELS} pixels; its format is given as {format!r}",
     )
     if len(data) < RVL_HEAD.size:
         raise wrong
     width, height = RVL_HEAD.unpack_from(data)
     count = width * height
-    if not 0 < count <= MOST_PIXELS:
+    if not 0 < count <= MAX_PIXELS:
         raise wrong
     check_size((width, height), size)
     data = data[RVL_HEAD.size : RVL_HEAD.size + 4 * count + 16]  # a pixel has 7 nibbles at most
@@ -504,7 +504,7 @@ def numbers_of_rvl(packed: npt.NDArray[np.uint8]) -> Iterator[npt.NDArray[np.int
         starts = np.append(0, np.flatnonzero(nibbles < 8) + 1)
         sizes = np.diff(starts)
         rest = nibbles[starts[-1] :]
-        if max(sizes.max(initial=0), len(rest)) > MOST_NIBBLES:
+        if max(sizes.max(initial=0), len(rest)) > MAX_NIBBLES:
             yield None
             return
         if len(sizes):

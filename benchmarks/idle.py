@@ -38,7 +38,7 @@ SETTLE_S: Final = 15.0
 SIGNS_S: Final = (50.0, 15.0)
 """The interval of aionode's signs of life to each other process, for the first process, and what is
 added for each one that was there before."""
-MOST_S: Final = 300.0
+MAX_S: Final = 300.0
 """The longest time for which a crowd is looked at."""
 STARTS: Final = 5
 """How many processes start and end while the others are measured."""
@@ -251,7 +251,7 @@ def measured(pids: list[int], seconds: float) -> Row:
 def period_s(peer: str, count: int, seconds: float) -> float:
     """Return how long to look at a crowd: each process gives a sign of life at least once."""
     first, each = SIGNS_S
-    return max(seconds, min(first + each * count, MOST_S)) if peer == "aionode" else seconds
+    return max(seconds, min(first + each * count, MAX_S)) if peer == "aionode" else seconds
 
 
 def prices_ms(peer: str, pids: list[int], domains: dict[str, int]) -> dict[str, float]:

@@ -21,10 +21,10 @@ MODULES = sorted(
     path for path in ROOT.rglob("*.py") if path.relative_to(ROOT).parts[0] != "interfaces"
 )
 
-MOST_PRIVATE_READS = 124
+MAX_PRIVATE_READS = 124
 """How often tests may read private names of aionode; the number only falls."""
 
-MOST_MODULES = 20
+MAX_MODULES = 20
 """How many modules may stand at one level."""
 
 LATE = {
@@ -50,7 +50,7 @@ def test_tests_read_fewer_private_names_than_before() -> None:
     """Such a test breaks with each change inside, and passes when the public name is broken."""
     counts = private_reads.count()
     reads = sum(names.total() for names in counts.values())
-    assert reads <= MOST_PRIVATE_READS, {str(path): [*names] for path, names in counts.items()}
+    assert reads <= MAX_PRIVATE_READS, {str(path): [*names] for path, names in counts.items()}
 
 
 def test_no_imports_form_a_cycle() -> None:
@@ -80,7 +80,7 @@ def test_no_folder_has_more_than_twenty_modules() -> None:
     folders = Counter(path.parent.relative_to(ROOT).as_posix() for path in MODULES)
     del folders["ros_packages/rclpy"]
 
-    assert [folder for folder, modules in folders.items() if modules > MOST_MODULES] == []
+    assert [folder for folder, modules in folders.items() if modules > MAX_MODULES] == []
 
 
 THREADS_AND_LOCKS = {

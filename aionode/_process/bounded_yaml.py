@@ -12,7 +12,7 @@ from typing import Any, Final
 
 __all__ = [
     "LARGEST_TEXT",
-    "MOST_VALUES",
+    "MAX_VALUES",
     "VALUES_VARIABLE",
     "checked_yaml",
     "composed_yaml",
@@ -26,7 +26,7 @@ __all__ = [
 LARGEST_TEXT: Final = 8 << 20
 """Maximum size of a text, in bytes."""
 
-MOST_VALUES: Final = 80_000
+MAX_VALUES: Final = 80_000
 """Maximum values and keys, about a second's work; an alias counts as all values that it expands
 to."""
 
@@ -51,7 +51,7 @@ FROM_CONSTRUCTORS: Final = (
 def most_values() -> int:
     """Return the maximum number of values in a text."""
     given = os.environ.get(VALUES_VARIABLE, "")
-    return int(given) if given.isascii() and given.isdigit() else MOST_VALUES
+    return int(given) if given.isascii() and given.isdigit() else MAX_VALUES
 
 
 def checked_yaml(text: str | bytes) -> None:

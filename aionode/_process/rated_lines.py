@@ -9,14 +9,14 @@ from msgspec import Struct
 
 from aionode._process.recent import Recent
 
-__all__ = ["MOST_WAIT_NS", "WAIT_NS", "RatedLines"]
+__all__ = ["MAX_WAIT_NS", "WAIT_NS", "RatedLines"]
 
 K = TypeVar("K", bound=Hashable)
 
 WAIT_NS: Final = 10_000_000_000
 """The time between two lines about the same subject; it doubles while the events continue."""
 
-MOST_WAIT_NS: Final = 640_000_000_000
+MAX_WAIT_NS: Final = 640_000_000_000
 
 
 class Line(Struct):
@@ -69,6 +69,6 @@ class RatedLines(Generic[K]):
             return f" ({count} at once)" if count > 1 else ""
         more = line.unsaid + count - 1
         is_over = now_ns > line.due_ns + line.wait_ns
-        line.wait_ns = WAIT_NS if is_over else min(2 * line.wait_ns, MOST_WAIT_NS)
+        line.wait_ns = WAIT_NS if is_over else min(2 * line.wait_ns, MAX_WAIT_NS)
         line.due_ns, line.unsaid = now_ns + line.wait_ns, 0
         return f" ({more} more since the last line)" if more else ""

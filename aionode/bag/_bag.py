@@ -13,7 +13,7 @@ from aionode._process.concurrency import run_in_thread
 from aionode.bag.files.losses import LOSSES, MISSING, losses_from, missing_from
 from aionode.bag.files.metadata import FILE_NAME, counts_in, read_metadata, start_in, topics_in
 from aionode.bag.files.order import in_order
-from aionode.bag.files.record import MOST_NS, Record, TopicInfo, time_of
+from aionode.bag.files.record import MAX_NS, Record, TopicInfo, time_of
 from aionode.bag.files.source import CHECK, McapSource
 from aionode.bag.files.sqlite import SqliteSource
 from aionode.clock import Duration, Time
@@ -113,7 +113,7 @@ class Bag:
     @property
     def start_ns(self) -> int:
         """The time of the first message in nanoseconds since 1970; 0 without one."""
-        return 0 if self._start_ns == MOST_NS else self._start_ns
+        return 0 if self._start_ns == MAX_NS else self._start_ns
 
     @property
     def end_ns(self) -> int:
@@ -133,7 +133,7 @@ class Bag:
     @property
     def duration(self) -> Duration:
         """The time from the first message to the last."""
-        return Duration(nanoseconds=min(max(self.end_ns - self.start_ns, 0), MOST_NS))
+        return Duration(nanoseconds=min(max(self.end_ns - self.start_ns, 0), MAX_NS))
 
     @property
     def files(self) -> list[tuple[int, str]]:
@@ -174,7 +174,7 @@ class Bag:
             return default
         if isinstance(value, Duration):
             return max(self.start_ns + value.nanoseconds, 0)
-        return END_NS if value.nanoseconds == MOST_NS else value.nanoseconds
+        return END_NS if value.nanoseconds == MAX_NS else value.nanoseconds
 
     def close(self) -> None:
         """Close its files. Closing it again has no effect."""
@@ -287,14 +287,14 @@ class Batches(Generic[T]):
 
 
 def first_ns(sources: list[Source], told_ns: int) -> int:
-    """Return the time of the first message; `MOST_NS` without one.
+    """Return the time of the first message; `MAX_NS` without one.
 
     Args:
         sources: The files.
         told_ns: What the metadata say. If it is earlier than what the files' summaries say, one of
             the two is wrong, and the first messages are read.
     """
-    start_ns = min((source.start_ns for source in sources), default=MOST_NS)
+    start_ns = min((source.start_ns for source in sources), default=MAX_NS)
     if told_ns < start_ns:
         for source in sources:
             for record in islice(source.records(None, 0, END_NS, []), 1):

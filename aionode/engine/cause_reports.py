@@ -32,10 +32,10 @@ __all__ = [
 LARGEST_REPORT: Final = 16 * 2**20
 """Maximum bytes of an answer of another process."""
 
-MOST_TOLD: Final = 200
+MAX_TOLD: Final = 200
 """Maximum number of entries in the answer to a question for single ones and their causes."""
 
-MOST_AT_ONCE: Final = 1000
+MAX_AT_ONCE: Final = 1000
 """Maximum number of runs, and of entries, in the answer to a question for all."""
 
 T = TypeVar("T")
@@ -168,7 +168,7 @@ def answer(log: CauseLog | None, participant: str, question: CauseQuestion) -> C
         return report
     entries = log.everything()
     by_key = {key_of(sent): sent for sent in entries}
-    wanted = [by_key[key] for key in question.keys[:MOST_TOLD] if key in by_key]
+    wanted = [by_key[key] for key in question.keys[:MAX_TOLD] if key in by_key]
     if question.name:
         wanted += latest(entries, question.name)
     report.sent = [reported(sent) for sent in with_causes(wanted, by_key)]
@@ -189,7 +189,7 @@ def newer(kept: list[T], count: int, since: int) -> tuple[int, list[T]]:
     """Return the number of the first kept item from `since` on, and the items from there."""
     oldest = count - len(kept)
     begin = min(max(since, oldest), count)
-    return begin, kept[begin - oldest :][:MOST_AT_ONCE]
+    return begin, kept[begin - oldest :][:MAX_AT_ONCE]
 
 
 def key_of(sent: Sent) -> Key:
@@ -224,7 +224,7 @@ def with_causes(wanted: Iterable[Sent], by_key: dict[Key, Sent]) -> list[Sent]:
     found: dict[Key, Sent] = {}
     left = list(wanted)
     for sent in left:  # which grows meanwhile
-        if key_of(sent) in found or len(found) == MOST_TOLD:
+        if key_of(sent) in found or len(found) == MAX_TOLD:
             continue
         found[key_of(sent)] = sent
         for run in sent.causes:

@@ -43,13 +43,13 @@ __all__ = [
 
 Kind: TypeAlias = Literal["message", "request", "response", "goal", "timer"]
 
-MOST_KEPT: Final = 4096
+MAX_KEPT: Final = 4096
 """How many sent items, and how many runs, a context keeps: about 2 MB of each."""
 
-MOST_SENDERS: Final = 1024
+MAX_SENDERS: Final = 1024
 """Maximum number of publishers, clients and services whose last item is kept, however old."""
 
-MOST_CAUSES: Final = 8
+MAX_CAUSES: Final = 8
 """Maximum number of causes of an item; the latest are kept."""
 
 
@@ -142,7 +142,7 @@ class Run:
         """Add a cause for what this run and its tasks send: once `task` has ended, or now."""
         reference = None if task is None else weakref.ref(task)
         others = [each for each in self.shared if each[0] is not run]
-        self.shared = [*others, (run, reference)][-MOST_CAUSES:]
+        self.shared = [*others, (run, reference)][-MAX_CAUSES:]
 
 
 class Sent(Struct, frozen=True):
@@ -186,7 +186,7 @@ def acting_for() -> tuple[Run, ...]:
             task = None if reference is None else reference()
             if (task is None or task.done()) and shared not in found:
                 found.append(shared)
-    return tuple(found[:1] + found[1:][1 - MOST_CAUSES :])
+    return tuple(found[:1] + found[1:][1 - MAX_CAUSES :])
 
 
 def add_cause(*runs: Run) -> None:
@@ -208,8 +208,8 @@ def add_cause(*runs: Run) -> None:
             causes.append(run)
         else:
             causes[place] = run
-    if len(causes) > MOST_CAUSES:
-        del causes[1 : 1 + len(causes) - MOST_CAUSES]
+    if len(causes) > MAX_CAUSES:
+        del causes[1 : 1 + len(causes) - MAX_CAUSES]
     CAUSES.set(tuple(causes))
 
 
@@ -259,12 +259,12 @@ class CauseLog:
     """
 
     def __init__(self) -> None:
-        self.sent: deque[Sent] = deque(maxlen=MOST_KEPT)
-        self.runs: deque[Run] = deque(maxlen=MOST_KEPT)
+        self.sent: deque[Sent] = deque(maxlen=MAX_KEPT)
+        self.runs: deque[Run] = deque(maxlen=MAX_KEPT)
         self.listeners: list[Listener] = []
         self.sent_counted = 0
         self.runs_counted = 0
-        self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MOST_SENDERS)
+        self._last: Recent[tuple[Kind, bytes, str], Sent] = Recent(MAX_SENDERS)
 
     def note(
         self,

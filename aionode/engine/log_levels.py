@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LevelAnswers", "log_message"]
 
-MOST_LEVELS: Final = 1_000
+MAX_LEVELS: Final = 1_000
 """Maximum loggers in one request."""
 
 
@@ -68,11 +68,11 @@ def refuse_many(loggers: Sequence[object]) -> None:
     """Reject a request about more loggers than any tool would name.
 
     Raises:
-        RequestRefusedError: there are more than `MOST_LEVELS`.
+        RequestRefusedError: there are more than `MAX_LEVELS`.
     """
-    if len(loggers) > MOST_LEVELS:
+    if len(loggers) > MAX_LEVELS:
         raise RequestRefusedError(
-            f"the request has {len(loggers)} loggers, but at most {MOST_LEVELS} are allowed; "
+            f"the request has {len(loggers)} loggers, but at most {MAX_LEVELS} are allowed; "
             "split it into several requests"
         )
 

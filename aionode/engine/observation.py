@@ -36,7 +36,7 @@ __all__ = [
 LARGEST_REPORT: Final = 16 * 2**20
 """Maximum bytes of a report of another process."""
 
-MOST_TEXT: Final = 300
+MAX_TEXT: Final = 300
 """Maximum characters of the command line of a process."""
 
 
@@ -132,7 +132,7 @@ def unchanging() -> dict[str, Any]:
     """Return what stays the same while the process runs, and takes a while to look up."""
     return {
         "host": socket.gethostname(),
-        "program": " ".join(sys.argv)[:MOST_TEXT] or sys.executable,
+        "program": " ".join(sys.argv)[:MAX_TEXT] or sys.executable,
         "version": version("aionode"),
         "python": platform.python_version(),
         "cores": os.cpu_count() or 1,

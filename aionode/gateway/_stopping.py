@@ -30,15 +30,15 @@ ENDING_SEC: Final = 1.0
 ANSWER_SEC: Final = 2 * ENDING_SEC
 """How long to wait for another gateway, in seconds."""
 
-MOST_GATEWAYS: Final = 100
+MAX_GATEWAYS: Final = 100
 
-MOST_NAME: Final = 200
+MAX_NAME: Final = 200
 """Maximum length of a client's name in a request, in characters."""
 
-MOST_TOLD: Final = 100
+MAX_TOLD: Final = 100
 """Maximum number of motions of each kind accepted from another gateway's answer."""
 
-MOST_TEXT: Final = 300
+MAX_TEXT: Final = 300
 """Maximum length of a name in such an answer, in characters."""
 
 
@@ -114,11 +114,11 @@ class Stopping:
             and endpoint.name != self._service.srv_name
         ]
         answers = await asyncio.gather(
-            self.here(rights), *(self._ask(each, rights) for each in others[:MOST_GATEWAYS])
+            self.here(rights), *(self._ask(each, rights) for each in others[:MAX_GATEWAYS])
         )
         ended = set().union(*(each.ended for each in answers))
         moving = set().union(*(each.moving for each in answers))
-        if left := len(others[MOST_GATEWAYS:]):
+        if left := len(others[MAX_GATEWAYS:]):
             moving.add(Moving("unknown", f"{left} more gateways were not asked"))
         return Stopped(ended, moving)
 
@@ -183,16 +183,16 @@ class Stopping:
             client.destroy()
         ended = told(response.ended, response.ended_of)
         moving = told(response.moving, response.moving_of)
-        if max(len(response.ended), len(response.moving)) > MOST_TOLD:
+        if max(len(response.ended), len(response.moving)) > MAX_TOLD:
             node = other.node.fully_qualified_name
-            moving.add(Moving("unknown", f"{node} names more than {MOST_TOLD}"))
+            moving.add(Moving("unknown", f"{node} names more than {MAX_TOLD}"))
         return Stopped(ended, moving)
 
     async def _serve(
         self, request: StopMotion.Request, response: StopMotion.Response
     ) -> StopMotion.Response:
         """End the motion of another gateway's client through this one."""
-        name = request.identity[:MOST_NAME]
+        name = request.identity[:MAX_NAME]
         identity = self._robot.policy.named(name) or Identity(name)
         stopped = await self.here(Rights(self._robot, identity, "stop"))
         for name, who in stopped.ended:
@@ -208,8 +208,8 @@ class Stopping:
 
 def told(names: Iterable[str], clients: Iterable[str]) -> set[Moving]:
     """Return the motions in another gateway's answer, limited, as anyone can pose as a gateway."""
-    pairs = islice(zip(names, clients, strict=False), MOST_TOLD)
-    return {Moving(name[:MOST_TEXT], who[:MOST_TEXT]) for name, who in pairs}
+    pairs = islice(zip(names, clients, strict=False), MAX_TOLD)
+    return {Moving(name[:MAX_TEXT], who[:MAX_TEXT]) for name, who in pairs}
 
 
 async def cancelled(handle: Any) -> Any:

@@ -33,7 +33,7 @@ __all__ = ["Builder", "define"]
 DEEPEST = 50
 """Maximum nesting depth of types."""
 
-MOST_MEMBERS = 10_000
+MAX_MEMBERS = 10_000
 """Maximum fields and constants of a type, including those of all types it uses."""
 
 BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action": ActionType}
@@ -113,8 +113,8 @@ class Builder:
             text = self.texts[typename]
             self.members = self.members if self.open else 0
             self.members += sum(len(part.members) for part in text.parts)
-            if len(self.open) >= DEEPEST or self.members > MOST_MEMBERS:
-                problem = f"types in types deeper than {DEEPEST}, or with more than {MOST_MEMBERS}"
+            if len(self.open) >= DEEPEST or self.members > MAX_MEMBERS:
+                problem = f"types in types deeper than {DEEPEST}, or with more than {MAX_MEMBERS}"
                 raise IdlError(text.file, 0, 0, f"{problem} fields in all")
             self.open.append(typename)
             try:

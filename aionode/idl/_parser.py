@@ -65,13 +65,13 @@ ESCAPED = {
 }
 
 
-MOST_ELEMENTS = 2**32 - 1
+MAX_ELEMENTS = 2**32 - 1
 """Maximum bound of a sequence or string, whose length is encoded in 32 bits."""
 
 LARGEST_TEXT = 1 << 20
 """Maximum characters of a definition; MoveIt's largest action has 100 000, with comments."""
 
-MOST_MEMBERS = 2_000
+MAX_MEMBERS = 2_000
 """Maximum fields and constants of one message; the largest one of mavros has 200."""
 
 LARGEST_ARRAY = 2**26
@@ -141,8 +141,8 @@ class Part:
         if new.name in self._lines:
             problem = f"{new.name!r} is already defined on line {self._lines[new.name]}"
             raise LineError(new.column - 1, problem)
-        if len(self._members) >= MOST_MEMBERS:
-            raise LineError(0, f"a message has at most {MOST_MEMBERS} fields and constants")
+        if len(self._members) >= MAX_MEMBERS:
+            raise LineError(0, f"a message has at most {MAX_MEMBERS} fields and constants")
         if not self._members and not self._comment:
             self._comment, self._above = self._above, []
         said = " ".join(" ".join([*self._above, behind]).split())
@@ -200,12 +200,12 @@ def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
         at = match.start("string_bound")
         if name not in STRINGS:
             raise LineError(at - 2, f"only strings have a bound, not {name}")
-        bound = limit(match["string_bound"], at, "a bound", MOST_ELEMENTS)
+        bound = limit(match["string_bound"], at, "a bound", MAX_ELEMENTS)
     if match["brackets"] is None:
         return TypeText(name, bound)
     size, at = match["size"], match.start("size")
     if match["upper"]:
-        return TypeText(name, bound, "bounded", limit(size, at, "a size or bound", MOST_ELEMENTS))
+        return TypeText(name, bound, "bounded", limit(size, at, "a size or bound", MAX_ELEMENTS))
     if size:
         return TypeText(name, bound, "array", limit(size, at, "a size or bound", LARGEST_ARRAY))
     return TypeText(name, bound, "unbounded")

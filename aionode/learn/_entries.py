@@ -31,7 +31,7 @@ Array: TypeAlias = "npt.NDArray[Any]"
 
 IMAGES: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 
-MOST_NUMBERS: Final = 10_000
+MAX_NUMBERS: Final = 10_000
 """Maximum count of numbers in a feature."""
 
 FEATURE: Final = re.compile(r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*")
@@ -104,8 +104,8 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Raise ValueError for a path that the message does not have."""
         if not self.fields:
             raise ValueError(f"fields: none; give paths in {self.type}, such as {self.example}")
-        if len(self.fields) > MOST_NUMBERS:
-            raise ValueError(f"fields: {len(self.fields)} given; use at most {MOST_NUMBERS}")
+        if len(self.fields) > MAX_NUMBERS:
+            raise ValueError(f"fields: {len(self.fields)} given; use at most {MAX_NUMBERS}")
         cls = self.message_type
         for path in self.paths:
             try:

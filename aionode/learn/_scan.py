@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from aionode.bag.files.record import MOST_NS
+from aionode.bag.files.record import MAX_NS
 from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, MessageError
 from aionode.learn._field_paths import check_path
 from aionode.learn._series import Series, in_order
@@ -85,7 +85,7 @@ class Collected:
             self.invalid += 1
             self.problem = self.problem or str(error)
             return
-        arrival = min(record.time_ns, MOST_NS)
+        arrival = min(record.time_ns, MAX_NS)
         if self.is_captured and not stamp:
             self.unstamped.append(len(self.times))
         self.times.append(stamp or arrival)

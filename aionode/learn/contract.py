@@ -68,7 +68,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Action", "Contract", "Feature", "Observation"]
 
-MOST_ENTRIES: Final = 100
+MAX_ENTRIES: Final = 100
 """Maximum number of observations, and of actions, in a contract."""
 
 
@@ -119,8 +119,8 @@ class Contract(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         if not 1 <= self.fps <= 1000:
             raise ValueError(f"fps: {self.fps}; use 1 to 1000")
         for name, given in (("observations", self.observations), ("actions", self.actions)):
-            if not 1 <= len(given) <= MOST_ENTRIES:
-                raise ValueError(f"{name}: {len(given)} given; use 1 to {MOST_ENTRIES}")
+            if not 1 <= len(given) <= MAX_ENTRIES:
+                raise ValueError(f"{name}: {len(given)} given; use 1 to {MAX_ENTRIES}")
         topics = [each.topic for each in self.observations]
         if self.reference and self.reference not in topics:
             near = "".join(difflib.get_close_matches(self.reference, topics, 1))

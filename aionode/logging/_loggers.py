@@ -45,7 +45,7 @@ DEFAULT_LEVEL = LoggingSeverity.INFO
 ROOT, OWN = "ros", "aionode"
 EVERYTHING = 1  # not 0, which means the level of the root logger in `logging`
 
-MOST_LOGGERS = 1_000
+MAX_LOGGERS = 1_000
 """From this number of loggers in the process on, other nodes cannot create more."""
 
 LONGEST_NAME = 256
@@ -234,11 +234,11 @@ def set_logger_level_for_others(name: str, level: int) -> None:
         ValueError: `level` is not one of `LoggingSeverity`, or the logger does not exist and its
             name is too long or there are too many already.
     """
-    is_full = len(logging.Logger.manager.loggerDict) >= MOST_LOGGERS
+    is_full = len(logging.Logger.manager.loggerDict) >= MAX_LOGGERS
     if name and known_logger(name) is None and (is_full or len(name) > LONGEST_NAME):
         raise ValueError(
             f"there is no logger {brief(name)}; other nodes can create one with a name of "
-            f"{LONGEST_NAME} characters at most, and while there are fewer than {MOST_LOGGERS}"
+            f"{LONGEST_NAME} characters at most, and while there are fewer than {MAX_LOGGERS}"
         )
     set_logger_level(name, level)
 

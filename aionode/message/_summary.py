@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["summarize"]
 
-LEAST_BYTES: Final = 64
+MIN_BYTES: Final = 64
 """The least limit: what says that there is no room has to fit."""
 
 HEAD: Final = 8
@@ -85,8 +85,8 @@ def summarize(msg: Message, limit: int = 4000) -> dict[str, Any]:
         MessageError: A value does not fit its field.
         ValueError: `limit` is less than 64.
     """
-    if limit < LEAST_BYTES:
-        raise ValueError(f"limit: {limit} bytes given; a summary needs at least {LEAST_BYTES}")
+    if limit < MIN_BYTES:
+        raise ValueError(f"limit: {limit} bytes given; a summary needs at least {MIN_BYTES}")
     msg = snapshot(msg)
     name = named(msg.__class__)
     for elements, characters in DETAILS:

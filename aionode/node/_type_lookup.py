@@ -28,7 +28,7 @@ __all__ = ["find_type"]
 ANSWER_S: Final = 2.0
 """Timeout for one description, in seconds of real time; a node answers within milliseconds."""
 
-MOST_ASKED: Final = 5
+MAX_ASKED: Final = 5
 """How many nodes are asked about one type at most, as waits for silent ones add up."""
 
 ACTION_PARTS: Final = ("SendGoal", "GetResult", "FeedbackMessage")
@@ -74,8 +74,8 @@ def problem_of(
             f"({', '.join(sorted(hashes))})"
         )
     where = sorted({user.node.fully_qualified_name for user in users})
-    more = f" and {len(where) - MOST_ASKED} more" if len(where) > MOST_ASKED else ""
-    missing = f"{', '.join(where[:MOST_ASKED])}{more} does not describe it"
+    more = f" and {len(where) - MAX_ASKED} more" if len(where) > MAX_ASKED else ""
+    missing = f"{', '.join(where[:MAX_ASKED])}{more} does not describe it"
     return f"{what}, and {'; '.join(problems) or missing}"
 
 
@@ -93,7 +93,7 @@ async def described(
     by_node: dict[str, dict[str, EndpointInfo]] = {}
     for user in users:
         by_node.setdefault(user.node.fully_qualified_name, {})[user.type_name] = user
-    for endpoints in list(by_node.values())[:MOST_ASKED]:
+    for endpoints in list(by_node.values())[:MAX_ASKED]:
         try:
             interface = await described_by(node, name, endpoints)
         except TypeDescriptionError as error:

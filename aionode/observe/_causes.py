@@ -8,7 +8,7 @@ import msgspec
 
 from aionode.clock import perf_ns
 from aionode.engine.cause_reports import (
-    MOST_TOLD,
+    MAX_TOLD,
     CauseQuestion,
     CauseReport,
     Key,
@@ -20,7 +20,7 @@ from aionode.engine.cause_reports import (
     encoded,
     is_internal,
 )
-from aionode.engine.causes import MOST_CAUSES, Kind
+from aionode.engine.causes import MAX_CAUSES, Kind
 from aionode.graph import EndpointKind
 from aionode.names import is_hidden
 from aionode.observe._snapshot import ANSWER_S
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Cause", "Caused", "Findings", "Sender", "Why", "named_in", "senders_in", "why"]
 
-MOST_ROUNDS: Final = 64
+MAX_ROUNDS: Final = 64
 """Maximum number of rounds of questions for earlier causes, hence of processes in a chain."""
 
-MOST_ENTRIES: Final = 1000
+MAX_ENTRIES: Final = 1000
 """Maximum number of sent items that are traced back."""
 
-MOST_DRAWN: Final = 2 * MOST_ENTRIES
+MAX_DRAWN: Final = 2 * MAX_ENTRIES
 """Maximum number of sent items that a tree shows with their causes."""
 
 Unknown: TypeAlias = Literal[
@@ -133,9 +133,9 @@ async def why(node: Node, name: str, *, timeout_sec: float = ANSWER_S) -> Why:
     inquiry = Inquiry(node, name, timeout_sec)
     await inquiry.ask(CauseQuestion(name), None)
     roots = inquiry.roots()
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         keys = inquiry.missing()
-        if not keys or len(inquiry.sent) >= MOST_ENTRIES:
+        if not keys or len(inquiry.sent) >= MAX_ENTRIES:
             break
         owners = {owner for owners in keys.values() for owner in owners}
         await inquiry.ask(CauseQuestion(keys=list(keys)), owners)
@@ -243,12 +243,12 @@ class Findings:
         key = entry.kind, entry.gid, entry.sequence
         _, report = self.sent[key]
         is_known = key not in self._drawn and not (
-            len(above) >= MOST_ROUNDS * 2 or len(self._drawn) >= MOST_DRAWN
+            len(above) >= MAX_ROUNDS * 2 or len(self._drawn) >= MAX_DRAWN
         )
         unknown: Unknown = "" if is_known else "above" if key in self._drawn else "too far"
         self._drawn.add(key)
         causes = (
-            self._cause(entry, run, report, (*above, key)) for run in entry.causes[:MOST_CAUSES]
+            self._cause(entry, run, report, (*above, key)) for run in entry.causes[:MAX_CAUSES]
         )
         return Caused(
             entry.kind,
@@ -378,7 +378,7 @@ class Inquiry(Findings):
         found: dict[Key, list[str]] = {}
         for entry, _ in self.sent.values():
             for run in entry.causes:
-                if len(found) == MOST_TOLD:
+                if len(found) == MAX_TOLD:
                     return found
                 key = run.kind, run.gid, run.sequence
                 if key not in self.sent and key not in self._asked and run.kind != "timer":

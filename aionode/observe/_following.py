@@ -27,10 +27,10 @@ __all__ = ["AFTER_ALL", "Following"]
 AFTER_ALL: Final = 2**60
 """A number higher than that of any callback."""
 
-MOST_ANSWERS: Final = 16
+MAX_ANSWERS: Final = 16
 """Maximum number of questions to a context at a time: it returns up to 1000 of 4096 log entries."""
 
-MOST_CONTEXTS: Final = 10_000
+MAX_CONTEXTS: Final = 10_000
 """How many contexts are remembered: each command run during a day is one."""
 
 
@@ -49,13 +49,13 @@ class Following:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self.told: Recent[str, CauseReport] = Recent(MOST_CONTEXTS)
-        self.offsets: Recent[str, int] = Recent(MOST_CONTEXTS)
+        self.told: Recent[str, CauseReport] = Recent(MAX_CONTEXTS)
+        self.offsets: Recent[str, int] = Recent(MAX_CONTEXTS)
         self.lost = 0
-        self.not_kept: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
+        self.not_kept: Recent[str, list[str]] = Recent(MAX_CONTEXTS)
         self.silent: dict[str, list[str]] = {}
-        self.older: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
-        self.unreadable: Recent[str, list[str]] = Recent(MOST_CONTEXTS)
+        self.older: Recent[str, list[str]] = Recent(MAX_CONTEXTS)
+        self.unreadable: Recent[str, list[str]] = Recent(MAX_CONTEXTS)
 
     def add(self, report: CauseReport) -> None:
         """Process an answer with new items."""
@@ -69,7 +69,7 @@ class Following:
         """Ask for new items; contexts seen for the first time are asked from number `first` on."""
         context = self._node.context
         self.silent = {}
-        for _ in range(MOST_ANSWERS):
+        for _ in range(MAX_ANSWERS):
             question = self._next(context.participant, first)
             own = answer(context.causes, context.participant, question)
             self._keep(own)
@@ -95,7 +95,7 @@ class Following:
 
     async def _ask(self, transport: Any, participant: str, first: int) -> None:
         """Ask one context for all new items."""
-        for _ in range(MOST_ANSWERS):
+        for _ in range(MAX_ANSWERS):
             question = self._next(participant, first)
             told = await transport.observe("causes", encoded(question), ANSWER_S, {participant})
             data = told.get(participant)

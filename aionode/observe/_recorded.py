@@ -10,13 +10,13 @@ from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.engine.cause_reports import (
     LARGEST_REPORT,
-    MOST_AT_ONCE,
+    MAX_AT_ONCE,
     UNREADABLE,
     CauseReport,
     Key,
     SentReport,
 )
-from aionode.engine.causes import MOST_SENDERS, Kind
+from aionode.engine.causes import MAX_SENDERS, Kind
 from aionode.observe._causes import Findings, Sender, Why, named_in, senders_in
 from aionode.observe._following import Following
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 __all__ = ["CauseRecorder", "RecordedCauses"]
 
-MOST_READ: Final = 100_000
+MAX_READ: Final = 100_000
 """How many of the latest sent items are kept while a recording is read."""
 
-MOST_ENDPOINTS: Final = 20_000
+MAX_ENDPOINTS: Final = 20_000
 """How many endpoints, and how many contexts, are kept while a recording is read."""
 
-MOST_BYTES: Final = 128 << 20
+MAX_BYTES: Final = 128 << 20
 """Maximum bytes of each kind of them, as JSON, since anyone may have written a recording."""
 
 K = TypeVar("K")
@@ -89,7 +89,7 @@ class RecentParts(Recent[K, V]):
         self._bytes += size - self._sizes.get(key, 0)
         self._sizes[key] = size
         self[key] = value
-        while self._bytes > MOST_BYTES:
+        while self._bytes > MAX_BYTES:
             self._evict()
 
     def _evict(self) -> None:
@@ -112,7 +112,7 @@ class CauseRecorder(Following):
     def add(self, report: CauseReport) -> None:
         """Process an answer; one that could not be read from a recording counts as unreadable."""
         participant = report.participant
-        told = msgspec.structs.replace(report, runs=[], sent=report.sent[:MOST_AT_ONCE])
+        told = msgspec.structs.replace(report, runs=[], sent=report.sent[:MAX_AT_ONCE])
         text = encoded(CauseRecord(*self._now(), told, self.offsets[participant]))
         if decoded(text) is None:
             self.unreadable.put(participant, self.nodes_of(participant))
@@ -132,7 +132,7 @@ class CauseRecorder(Following):
         graph = CauseRecord(
             *self._now(),
             named=named,
-            senders=senders_in(self._node)[:MOST_ENDPOINTS],
+            senders=senders_in(self._node)[:MAX_ENDPOINTS],
             silent=list(self.silent),
             older=list(self.older),
             unreadable=list(self.unreadable),
@@ -153,13 +153,13 @@ class RecordedCauses:
     """
 
     def __init__(self) -> None:
-        self._sent: RecentParts[Key, tuple[SentReport, CauseReport]] = RecentParts(MOST_READ)
+        self._sent: RecentParts[Key, tuple[SentReport, CauseReport]] = RecentParts(MAX_READ)
         self._last: RecentParts[tuple[Kind, bytes, str], tuple[SentReport, CauseReport]] = (
-            RecentParts(MOST_SENDERS)
+            RecentParts(MAX_SENDERS)
         )
-        self._reports: RecentParts[str, tuple[CauseReport, int]] = RecentParts(MOST_ENDPOINTS)
-        self._named: RecentParts[str, list[str]] = RecentParts(MOST_ENDPOINTS)
-        self._senders: RecentParts[bytes, Sender] = RecentParts(MOST_ENDPOINTS)
+        self._reports: RecentParts[str, tuple[CauseReport, int]] = RecentParts(MAX_ENDPOINTS)
+        self._named: RecentParts[str, list[str]] = RecentParts(MAX_ENDPOINTS)
+        self._senders: RecentParts[bytes, Sender] = RecentParts(MAX_ENDPOINTS)
         self._graph = CauseRecord(0, 0)  # the latest
         self._moment = 0, 0  # the time of the last record, by both clocks
 

@@ -23,10 +23,10 @@ __all__ = ["Trace", "record_trace"]
 LOOK_S: Final = 0.2
 """The interval at which processes are asked, in seconds; each keeps 4096 callbacks meanwhile."""
 
-MOST_EVENTS: Final = 1_000_000
+MAX_EVENTS: Final = 1_000_000
 """Maximum number of callbacks and sent items in a trace."""
 
-MOST_BYTES: Final = 256 << 20
+MAX_BYTES: Final = 256 << 20
 """Maximum bytes of the answers in a trace; a callback takes about 150."""
 
 
@@ -85,9 +85,9 @@ class Recording(Following):
     def add(self, report: CauseReport) -> None:
         """Keep new items, up to a number and a size."""
         participant = report.participant
-        room = MOST_EVENTS - len(self._runs) - len(self._sent)
+        room = MAX_EVENTS - len(self._runs) - len(self._sent)
         self._bytes += len(encoded(report))
-        if self._bytes > MOST_BYTES:
+        if self._bytes > MAX_BYTES:
             room = 0
         self.lost += max(len(report.runs) + len(report.sent) - room, 0)
         self._runs += [(participant, run) for run in report.runs[:room]]

@@ -23,19 +23,19 @@ from aionode.parameter._value import Parameter
 
 __all__ = ["ParameterService", "parameter_services"]
 
-MOST_NAMES: Final = 10_000
+MAX_NAMES: Final = 10_000
 """Maximum names or values in one request; `ros2 param dump` asks for all of a node."""
 
-MOST_SET: Final = 2_000
+MAX_SET: Final = 2_000
 """Maximum parameters set by one request: each is checked, and published as an event."""
 
-MOST_REPEATED: Final = 1_000
+MAX_REPEATED: Final = 1_000
 """Maximum names in a request that repeats some; otherwise the node's own number is the limit."""
 
 LARGEST_ANSWER: Final = 2**24
 """Maximum bytes of the values in one answer: a request may repeat a name many times."""
 
-MOST_HELD: Final = 2**26
+MAX_HELD: Final = 2**26
 """Maximum bytes of all values of a node once other nodes have set some."""
 
 PARAMETER_BYTES: Final = 500
@@ -170,7 +170,7 @@ class Answers:
         self, request: srv.SetParameters.Request, response: srv.SetParameters.Response
     ) -> srv.SetParameters.Response:
         """Answer set_parameters: one by one, in order."""
-        refuse_many(request.parameters, MOST_SET)
+        refuse_many(request.parameters, MAX_SET)
         self._refuse_hoard(request.parameters)
         response.results = [self._set([message]) for message in request.parameters]
         return response
@@ -181,7 +181,7 @@ class Answers:
         response: srv.SetParametersAtomically.Response,
     ) -> srv.SetParametersAtomically.Response:
         """Answer set_parameters_atomically: all or none."""
-        refuse_many(request.parameters, MOST_SET)
+        refuse_many(request.parameters, MAX_SET)
         self._refuse_hoard(request.parameters)
         response.result = self._set(request.parameters)
         return response
@@ -197,10 +197,10 @@ class Answers:
         held_bytes = sum(
             PARAMETER_BYTES + len(name) + size_of(message.value) for name, message in held.items()
         )
-        if new_bytes + PARAMETER_BYTES * len(messages) + held_bytes > MOST_HELD:
+        if new_bytes + PARAMETER_BYTES * len(messages) + held_bytes > MAX_HELD:
             raise RequestRefusedError(
                 f"the parameters of this node have {held_bytes} bytes, and these {new_bytes}; a "
-                f"node keeps at most {MOST_HELD} that others have set"
+                f"node keeps at most {MAX_HELD} that others have set"
             )
 
     def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
@@ -225,10 +225,10 @@ def each_once(names: Sequence[str], read: Callable[[Any], list[Any]]) -> dict[st
         RequestRefusedError: many are requested, some of them repeatedly.
     """
     unique = list(dict.fromkeys(names))
-    if len(unique) < len(names) and len(names) > MOST_REPEATED:
+    if len(unique) < len(names) and len(names) > MAX_REPEATED:
         raise RequestRefusedError(
             f"the request has {len(names)} names, but only {len(unique)} different ones; ask for "
-            f"each once, or for at most {MOST_REPEATED}"
+            f"each once, or for at most {MAX_REPEATED}"
         )
     return dict(zip(unique, read(unique), strict=True))
 
@@ -246,7 +246,7 @@ def refuse_large(size_bytes: int, what: str) -> None:
         )
 
 
-def refuse_many(items: Sequence[object], most: int = MOST_NAMES) -> None:
+def refuse_many(items: Sequence[object], most: int = MAX_NAMES) -> None:
     """Refuse a request with more items than any tool sends.
 
     Raises:

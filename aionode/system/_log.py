@@ -34,7 +34,7 @@ LONGEST_LINE: Final = 65_536
 PIECE: Final = 4096
 """Bytes that a pipe accepts atomically: PIPE_BUF."""
 
-MOST_PIECES: Final = 1024
+MAX_PIECES: Final = 1024
 """Maximum pieces written at once: IOV_MAX."""
 
 Buffer: TypeAlias = bytes | memoryview
@@ -264,14 +264,14 @@ def prefixed(prefix: bytes, before: bytes, output: bytes, end: int) -> tuple[Buf
 def unwritten(descriptor: int, lines: list[Buffer]) -> list[Buffer]:
     """Write to a descriptor that never blocks; return what was not accepted."""
     while lines:
-        some = lines[:MOST_PIECES]
+        some = lines[:MAX_PIECES]
         try:
             written = os.writev(descriptor, some)
         except OSError:
             return lines
         if written < sum(map(len, some)):
             return [memoryview(b"".join(lines))[written:]]
-        lines = lines[MOST_PIECES:]
+        lines = lines[MAX_PIECES:]
     return lines
 
 

@@ -42,7 +42,7 @@ SETTLE_S: Final = 15.0
 
 IDLE_S: Final = 50.0
 IDLE_S_EACH: Final = 15.0
-MOST_IDLE_S: Final = 300.0
+MAX_IDLE_S: Final = 300.0
 """How long idle processes are looked at: the first number, some more for each process, and this
 at most. Each process gives a sign of life once in this time, except the last of more than 17."""
 
@@ -369,7 +369,7 @@ async def measure_system(count: int, before: SystemRow | None) -> SystemRow:
         known = await all_asked(f"know {count * TOPICS} {WAIT_S}")
         known_s = time.perf_counter() - began
         await all_asked(f"idle {SETTLE_S}")
-        idle = await all_asked(f"idle {min(IDLE_S + IDLE_S_EACH * count, MOST_IDLE_S)}")
+        idle = await all_asked(f"idle {min(IDLE_S + IDLE_S_EACH * count, MAX_IDLE_S)}")
         grown = [now["kb"] - then["kb"] for now, then in zip(idle, without, strict=True)]
         core = statistics.mean(each["core"] for each in idle)
         return SystemRow(

@@ -39,13 +39,13 @@ NUMBERS = (-(2**63), -1, 0, 1, 2, 10, 1000, 2**31, 2**32, 2**62, 2**63 - 1)
 
 SIZES = (0, 1, 10, 100, 3000)
 
-MOST_HELD = 2000
+MAX_HELD = 2000
 """How many tokens it holds at once."""
 
 
 def lie_in_token(liar: Liar, chance: random.Random) -> None:
     """Announce an endpoint, with numbers of a QoS profile and names of any length."""
-    if len(liar.held) > MOST_HELD:
+    if len(liar.held) > MAX_HELD:
         liar.drop()
         liar.be_node()
     kind = chance.choice(list(EndpointKind))

@@ -153,7 +153,7 @@ def text_with(sent: list[Any], **clocks: int) -> str:
 
 def test_what_is_kept_of_a_recording_has_a_bounded_size(monkeypatch: pytest.MonkeyPatch) -> None:
     """A compressed bag from a stranger may contain any number of causes with long names."""
-    monkeypatch.setattr(_recorded, "MOST_BYTES", 1000)
+    monkeypatch.setattr(_recorded, "MAX_BYTES", 1000)
     causes = RecordedCauses()
     for at_s in range(1, 100):
         assert causes.add(looked(at_s, at_s))

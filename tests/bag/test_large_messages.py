@@ -77,7 +77,7 @@ async def test_a_recorder_that_falls_behind_keeps_no_memory_of_a_publisher(
 ) -> None:
     """What a slow disk leaves waiting is copied, beyond a few messages."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
-    monkeypatch.setattr("aionode.bag.recording.recording.MOST_LENT", SIZE)
+    monkeypatch.setattr("aionode.bag.recording.recording.MAX_LENT", SIZE)
     async with recorded_over_a_link(tmp_path / "run") as (publisher, link):
         for _ in range(5):
             publisher.publish(IMAGE)

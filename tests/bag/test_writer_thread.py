@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from aionode.bag._writer import BagWriter, topic_info
-from aionode.bag.files.mcap_writer import MOST_AT_ONCE, write_all
+from aionode.bag.files.mcap_writer import MAX_AT_ONCE, write_all
 from aionode.bag.recording.writer_thread import Row, WriterThread
 from aionode.errors import BagWriteError
 from aionode.interfaces.std_msgs.msg import String
@@ -85,7 +85,7 @@ def test_no_more_than_a_number_of_small_messages_waits_or_is_kept(
 ) -> None:
     """Even empty messages take memory."""
     monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
-    monkeypatch.setattr("aionode.bag.recording.writer_thread.MOST_ROWS", 3)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.MAX_ROWS", 3)
     thread = thread_of(BagWriter(tmp_path / "waiting"))
     assert [thread.put(ROW) for _ in range(5)] == [True, True, True, False, False]
     thread.stop()
@@ -123,4 +123,4 @@ def test_large_messages_are_written_in_pieces(
     with (tmp_path / "file").open("wb") as file:
         write_all(file.fileno(), pieces)
     assert (tmp_path / "file").read_bytes() == b"".join(pieces)
-    assert max(sizes) <= MOST_AT_ONCE
+    assert max(sizes) <= MAX_AT_ONCE

@@ -241,7 +241,7 @@ def test_a_long_line_keeps_its_extremes_and_its_end(
     """A recording is shown whole however long it is, in bounded memory."""
     line = Line("name", keep_ns)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(braille, "MOST_POINTS", 16)
+        patch.setattr(braille, "MAX_POINTS", 16)
         for time_ns, value in enumerate(values):
             line.add(time_ns, value)
             assert len(line.points) <= 16

@@ -17,7 +17,7 @@ from pathlib import Path
 FOLDER = Path(".fuzz")
 LONGEST_INPUT = 4096
 SLOWEST_S = 5
-MOST_MEMORY_MB = 1024
+MAX_MEMORY_MB = 1024
 
 
 def fuzz(name: str, seconds: int) -> None:
@@ -36,7 +36,7 @@ def fuzz(name: str, seconds: int) -> None:
         f"-max_total_time={seconds}",
         f"-max_len={LONGEST_INPUT}",
         f"-timeout={SLOWEST_S}",
-        f"-rss_limit_mb={MOST_MEMORY_MB}",
+        f"-rss_limit_mb={MAX_MEMORY_MB}",
         f"-artifact_prefix={FOLDER / name}-",
         "-print_final_stats=1",
         "-verbosity=0",

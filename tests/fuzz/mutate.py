@@ -20,7 +20,7 @@ from tests.fuzz.targets import TARGETS, Target
 
 FOLDER = Path(".fuzz")
 SLOWEST_S = 2.0
-MOST_BYTES = 300 << 20
+MAX_BYTES = 300 << 20
 PEAK = Path("/proc/self/clear_refs")
 STATUS = Path("/proc/self/status")
 STRANGE = (
@@ -93,7 +93,7 @@ def run(target: Target, count: int, seed: int) -> Result:
         data = mutated(dice, target, seeds)
         wrong, seconds, taken = measured(target, data)
         slowest, most = max(slowest, seconds), max(most, taken)
-        if wrong or seconds > SLOWEST_S or taken > MOST_BYTES:
+        if wrong or seconds > SLOWEST_S or taken > MAX_BYTES:
             failures += 1
             FOLDER.mkdir(exist_ok=True)
             file = FOLDER / f"{target.name}-{seed}-{number}"

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from aionode.gateway import Identity
-from aionode.gateway.session.audit import MOST_TEXT, REFUSALS_PER_SEC, append, shortened
+from aionode.gateway.session.audit import MAX_TEXT, REFUSALS_PER_SEC, append, shortened
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.std_msgs.msg import String
 from aionode.parameter import Parameter
@@ -43,7 +43,7 @@ class Endless(list[Any]):
     def __iter__(self) -> Iterator[Any]:
         """Yield its items."""
         for number in range(10_000):
-            assert number < MOST_TEXT
+            assert number < MAX_TEXT
             yield 7
 
     def __repr__(self) -> str:
@@ -73,7 +73,7 @@ for _ in range(900):
 )
 def test_what_is_written_of_arguments_does_not_grow_with_them(arguments: Any) -> None:
     """The time does not either: a message may contain a million numbers."""
-    assert 1 < len(shortened(arguments)) <= MOST_TEXT
+    assert 1 < len(shortened(arguments)) <= MAX_TEXT
 
 
 def test_arguments_are_written_as_messages_are_printed() -> None:

@@ -19,14 +19,14 @@ from aionode.gateway import Policy, Session
 from aionode.gateway.foxglove import client as _foxglove_client
 from aionode.gateway.foxglove.client import Client
 from aionode.gateway.rosbridge import rosapi as _rosapi
-from aionode.gateway.rosbridge.client import MOST_MALFORMED, serve_frames
+from aionode.gateway.rosbridge.client import MAX_MALFORMED, serve_frames
 from aionode.gateway.rosbridge.request import FragmentStore
 from aionode.gateway.session import feed as _feed
 from aionode.gateway.session.delivery.outbox import Outbox
-from aionode.gateway.session.graph import MOST_QUESTIONS
+from aionode.gateway.session.graph import MAX_QUESTIONS
 from aionode.gateway.session.lanes import Lanes
 from aionode.gateway.session.robot import Robot
-from aionode.gateway.session.sharing import MOST_UNUSED, Shared
+from aionode.gateway.session.sharing import MAX_UNUSED, Shared
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -181,14 +181,14 @@ async def test_unused_endpoints_are_bounded(bench: Bench) -> None:
     """A client uses one name after another: each of its publishers stays for a while."""
     shared = Shared(bench.robot.time_base)
     made = []
-    for number in range(3 * MOST_UNUSED):
+    for number in range(3 * MAX_UNUSED):
         entity, give_back = shared.take(number, Entity)
         made.append(entity)
         give_back()
     kept = [number for number, entity in enumerate(made) if not entity.destroyed]
     shared.close()
 
-    assert kept == list(range(2 * MOST_UNUSED, 3 * MOST_UNUSED))
+    assert kept == list(range(2 * MAX_UNUSED, 3 * MAX_UNUSED))
     assert all(entity.destroyed for entity in made)
 
 
@@ -230,7 +230,7 @@ def test_fragments_count_in_bytes_until_they_are_complete() -> None:
 
 async def test_garbage_in_fragments_is_garbage(bench: Bench) -> None:
     """A client that sends only invalid ops is disconnected, however they are split."""
-    frames = iter(json.dumps(fragment("garbage")) for _ in range(MOST_MALFORMED + 50))
+    frames = iter(json.dumps(fragment("garbage")) for _ in range(MAX_MALFORMED + 50))
 
     async def sent() -> AsyncIterator[str]:
         for frame in frames:
@@ -238,7 +238,7 @@ async def test_garbage_in_fragments_is_garbage(bench: Bench) -> None:
 
     async with bench.session() as session:
         await serve_frames(session, sent())
-    assert session.rights.refused == MOST_MALFORMED + 1
+    assert session.rights.refused == MAX_MALFORMED + 1
     assert len(list(frames)) == 49
 
 
@@ -246,7 +246,7 @@ async def test_channels_of_foxglove_do_not_pass_their_limit_at_once(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each of them waits in its own lane; an id in use is not a new channel."""
-    monkeypatch.setattr(_foxglove_client, "MOST_CHANNELS", 2)
+    monkeypatch.setattr(_foxglove_client, "MAX_CHANNELS", 2)
     find = bench.robot.find_type
 
     async def find_late(*arguments: Any) -> Any:
@@ -314,14 +314,14 @@ async def test_a_burst_of_questions_leaves_the_loop_to_others(
         counting = tasks.create_task(count_turns())
         async with asyncio.TaskGroup() as asking:
             for session in (one, two):
-                for _ in range(MOST_QUESTIONS):
+                for _ in range(MAX_QUESTIONS):
                     asking.create_task(_rosapi.answer(session, "topics", {}))
             await checkpoint()
             with pytest.raises(RefusedError, match="questions") as refused:
                 await _rosapi.answer(one, "topics", {})
         counting.cancel()
     assert refused.value.code == "too_many"
-    assert len(asked) == 2 * MOST_QUESTIONS
+    assert len(asked) == 2 * MAX_QUESTIONS
     assert len({turn for turn, _ in asked}) == len(asked)
     assert {name for _, name in asked[:10]} == {"one", "two"}
 
@@ -379,7 +379,7 @@ async def test_messages_that_are_kept_for_late_clients_are_bounded_in_bytes(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A camera may ask to keep a hundred pictures; the last one is always kept."""
-    monkeypatch.setattr(_feed, "MOST_LATCHED_BYTES", 1000)
+    monkeypatch.setattr(_feed, "MAX_LATCHED_BYTES", 1000)
     latched = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = bench.node.create_publisher(String, "/words", latched)
     async with bench.session() as early, bench.session() as late:

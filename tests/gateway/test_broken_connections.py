@@ -494,7 +494,7 @@ async def test_garbage_that_continues_after_the_goodbye_is_hardly_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The gateway waits some seconds for the client's close frame, which may follow later."""
-    monkeypatch.setattr("aionode.gateway.rosbridge.client.MOST_MALFORMED", 3)
+    monkeypatch.setattr("aionode.gateway.rosbridge.client.MAX_MALFORMED", 3)
     read = 0
     take_message = WebSocketConnection.take_message
 

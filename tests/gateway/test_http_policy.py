@@ -351,7 +351,7 @@ async def test_a_page_of_another_origin_and_a_wrong_token_are_refused(
     aionode_context: Context, headers: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On every route, before it runs."""
-    monkeypatch.setattr("aionode.gateway.server.door.MOST_WRONG", 100)
+    monkeypatch.setattr("aionode.gateway.server.door.MAX_WRONG", 100)
     async with robot_and_client(aionode_context, EVERYTHING) as (_, client):
         answers = {
             (method, path): await client.request(method, path, headers=headers)

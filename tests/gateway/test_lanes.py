@@ -10,9 +10,9 @@ import pytest
 from aionode._process.concurrency import checkpoint
 from aionode.errors import MessageError
 from aionode.gateway.session import lanes as lanes_module
-from aionode.gateway.session.lanes import MOST_WEIGHT, Lanes, weight_of
+from aionode.gateway.session.lanes import MAX_WEIGHT, Lanes, weight_of
 
-HALF = "x" * (MOST_WEIGHT // 2)
+HALF = "x" * (MAX_WEIGHT // 2)
 POSES = '{"poses":[' + ",".join(["{}"] * 99_000) + "]}"
 """A frame of 297 kB whose values take 7 MB."""
 

@@ -13,7 +13,7 @@ import pytest
 from aionode._process.concurrency import checkpoint
 from aionode.engine.wire import cdr
 from aionode.gateway.session.delivery.preparing import LARGE_BYTES, Preparing
-from aionode.gateway.session.delivery.waiting import MOST_BYTES
+from aionode.gateway.session.delivery.waiting import MAX_BYTES
 from aionode.gateway.session.encoding.frames import png_frame, png_frame_in_turns
 from aionode.gateway.session.encoding.large_json import SLICE_BYTES, SLICE_ITEMS, json_in_turns
 from aionode.gateway.session.encoding.values import json_of
@@ -121,7 +121,7 @@ async def test_a_small_message_does_not_overtake_a_large_one(robot: Robot) -> No
     assert slow.delivered == ["a", "b", "c"]
 
 
-@pytest.mark.parametrize(("depth", "size"), [(2, LARGE_BYTES), (10, MOST_BYTES // 2 - 100)])
+@pytest.mark.parametrize(("depth", "size"), [(2, LARGE_BYTES), (10, MAX_BYTES // 2 - 100)])
 async def test_what_waits_to_be_encoded_is_bounded(robot: Robot, depth: int, size: int) -> None:
     """In number and in bytes; the newest are kept, and drops are counted."""
     slow = Slow(robot, depth)

@@ -340,8 +340,8 @@ def test_what_another_gateway_names_is_bounded() -> None:
         [f"/{number}{'x' * 1000}" for number in range(1000)], ["y" * 1000] * 1000
     )
 
-    assert len(named) == _stopping.MOST_TOLD
-    assert {len(text) for each in named for text in each} == {_stopping.MOST_TEXT}
+    assert len(named) == _stopping.MAX_TOLD
+    assert {len(text) for each in named for text in each} == {_stopping.MAX_TEXT}
 
 
 async def boasting(_request: Any, response: Any) -> Any:
@@ -355,7 +355,7 @@ async def test_gateways_that_were_not_asked_are_counted(
     assisted: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nobody concludes that nothing moves by them."""
-    monkeypatch.setattr(_stopping, "MOST_GATEWAYS", 1)
+    monkeypatch.setattr(_stopping, "MAX_GATEWAYS", 1)
     for number in range(3):
         assisted.base.create_service(StopMotion, f"/many/_stop_{number}", silent)
     await settle()

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from aionode.bag import BagWriter
 from aionode.clock import Time
 from aionode.gateway.mcp import reading
-from aionode.gateway.mcp.answers import MOST_BYTES, SIZES, bounded
-from aionode.gateway.mcp.names import MOST_CHARACTERS, tool_name
-from aionode.gateway.mcp.tools import MOST_TYPED
+from aionode.gateway.mcp.answers import MAX_BYTES, SIZES, bounded
+from aionode.gateway.mcp.names import MAX_CHARACTERS, tool_name
+from aionode.gateway.mcp.tools import MAX_TYPED
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.std_srvs.srv import Trigger
 from tests.support.mcp_bench import POLICY, Bench, bench_of
@@ -289,7 +289,7 @@ async def test_many_services_have_one_tool(era: str) -> None:
     """A list of a hundred tools would fill the context of a model."""
     policy = POLICY.replace('call = "/switch"', 'call = "/**"')
     async with bench_of(policy) as bench:
-        for number in range(MOST_TYPED):
+        for number in range(MAX_TYPED):
             bench.base.create_service(Trigger, f"/work/w{number}", lambda _, response: response)
         client = await bench.connect(era)
         names = [tool.name for tool in (await client.list_tools()).tools]
@@ -329,7 +329,7 @@ def test_names_of_tools_are_short_and_unique(names: list[str]) -> None:
 
     assert len(set(made)) == len(names)
     assert all(re.fullmatch(r"[A-Za-z0-9_-]+", name) for name in made)
-    assert all(len(name) <= MOST_CHARACTERS for name in made)
+    assert all(len(name) <= MAX_CHARACTERS for name in made)
 
 
 class Counted(dict[str, Any]):
@@ -347,9 +347,9 @@ def test_what_does_not_fit_in_an_answer_is_not_read() -> None:
     """A message of millions of values would hold up the loop for seconds."""
     values = {"rows": [[Counted(at=number) for number in range(400)] for _ in range(400)]}
 
-    bounded(values, MOST_BYTES)
+    bounded(values, MAX_BYTES)
 
-    assert Counted.times < len(SIZES) * MOST_BYTES
+    assert Counted.times < len(SIZES) * MAX_BYTES
 
 
 JSON = st.recursive(

@@ -11,7 +11,7 @@ from websockets.frames import Opcode
 
 from aionode._process.concurrency import checkpoint
 from aionode.gateway.server.outgoing import (
-    MOST_CONTROL_BYTES,
+    MAX_CONTROL_BYTES,
     SLICE,
     SLICES_IN_A_TURN,
     Framing,
@@ -162,7 +162,7 @@ async def test_pongs_leave_after_the_frame_that_is_leaving(connection: Connectio
 async def test_a_client_that_reads_no_pongs_is_disconnected(connection: Connection) -> None:
     """Otherwise the gateway would have to buffer all of them."""
     connection.send(LARGE)
-    for _ in range(MOST_CONTROL_BYTES // 100 + 2):
+    for _ in range(MAX_CONTROL_BYTES // 100 + 2):
         connection.outgoing.write(b"x" * 100)
 
     assert connection.transport.is_aborted

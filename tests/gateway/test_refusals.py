@@ -15,9 +15,9 @@ from aionode.errors import MessageError, RefusedError, ServiceError
 from aionode.gateway import Identity, Policy
 from aionode.gateway.server.door import STATUS
 from aionode.gateway.session.refusals import (
-    MOST_LINES,
-    MOST_PLACES,
-    MOST_SUBJECTS,
+    MAX_LINES,
+    MAX_PLACES,
+    MAX_SUBJECTS,
     Refusal,
     Refusals,
 )
@@ -118,13 +118,13 @@ async def test_one_client_hides_no_lines_about_another(
 ) -> None:
     """It may request any names."""
     refusals = Refusals(bench.robot.node)
-    for number in range(3 * MOST_SUBJECTS):
+    for number in range(3 * MAX_SUBJECTS):
         refusals.note(Identity("loud"), "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
     refusals.note(Identity("quiet"), "http", Refusal.NOT_ALLOWED, "publish /x", "no")
 
-    assert sum("loud" in line for line in lines(caplog)) == MOST_LINES
+    assert sum("loud" in line for line in lines(caplog)) == MAX_LINES
     assert sum("quiet" in line for line in lines(caplog)) == 1
-    assert refusals.counts[Refusal.NOT_ALLOWED] == 3 * MOST_SUBJECTS + 1
+    assert refusals.counts[Refusal.NOT_ALLOWED] == 3 * MAX_SUBJECTS + 1
 
 
 async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window(
@@ -133,7 +133,7 @@ async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window
     """Otherwise a flood would look no larger than its few lines."""
     refusals, loud = Refusals(bench.robot.node), Identity("loud\x1b")
     for _ in range(2):
-        for number in range(MOST_LINES + 7):
+        for number in range(MAX_LINES + 7):
             refusals.note(loud, "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
         await bench.advance(60.0)
     refusals.note(Identity("quiet"), "http", Refusal.NOT_ALLOWED, "publish /x", "no")
@@ -150,7 +150,7 @@ async def test_refusals_without_room_for_a_line_are_in_the_number_of_its_next(
     refusals, loud = Refusals(bench.robot.node), Identity("loud")
     refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
     await bench.advance(10.0)
-    for number in range(MOST_LINES):
+    for number in range(MAX_LINES):
         refusals.note(loud, "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
     for _ in range(3):
         refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
@@ -165,13 +165,13 @@ async def test_a_client_without_a_name_hides_no_lines_about_one_elsewhere(
 ) -> None:
     """All unknown clients have the name ""; one host has many addresses in an IPv6 network."""
     refusals = Refusals(bench.robot.node)
-    for number in range(3 * MOST_LINES):
+    for number in range(3 * MAX_LINES):
         loud = Identity("", address=f"2001:db8::{number:x}")
         refusals.note(loud, "http", Refusal.UNAUTHORIZED, f"GET /{number}", "no token")
     quiet = Identity("", address="192.0.2.1")
     refusals.note(quiet, "http", Refusal.UNAUTHORIZED, "GET /0", "no token")
 
-    assert sum("2001:db8::" in line for line in lines(caplog)) == MOST_LINES
+    assert sum("2001:db8::" in line for line in lines(caplog)) == MAX_LINES
     assert sum("192.0.2.1" in line for line in lines(caplog)) == 1
 
 
@@ -180,12 +180,12 @@ async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lin
 ) -> None:
     """Addresses cost an attacker nothing, and each would get its own lines."""
     refusals = Refusals(bench.robot.node)
-    for number in range(2 * MOST_PLACES):
+    for number in range(2 * MAX_PLACES):
         each = Identity("", address=f"10.0.{number // 256}.{number % 256}")
         refusals.note(each, "http", Refusal.UNAUTHORIZED, "GET /", "no token")
     refusals.note(Identity("known"), "http", Refusal.HELD, "publish /x", "held")
 
-    assert len(lines(caplog)) == MOST_PLACES + MOST_LINES + 1
+    assert len(lines(caplog)) == MAX_PLACES + MAX_LINES + 1
     await bench.advance(10.0)
     refusals.note(Identity("known"), "http", Refusal.TOO_OLD, "publish /x", "old")
     assert sum("unknown clients: 90 more lines" in line for line in lines(caplog)) == 1

@@ -25,7 +25,7 @@ from aionode.logging import _loggers as loggers
 from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.node import Node
 from aionode.parameter import _store as parameter_store
-from aionode.parameter._services import LARGEST_ANSWER, MOST_HELD
+from aionode.parameter._services import LARGEST_ANSWER, MAX_HELD
 
 LONG = "x" * 10_000
 MANY = 10_000
@@ -120,8 +120,8 @@ async def test_others_cannot_fill_the_parameters_of_a_node(context: Context) -> 
                 refused += 1
 
         held = robot.get_parameters_by_prefix("").values()
-        assert sum(len(str(each.value)) for each in held) <= MOST_HELD
-        assert refused >= 70 - MOST_HELD // 10**6
+        assert sum(len(str(each.value)) for each in held) <= MAX_HELD
+        assert refused >= 70 - MAX_HELD // 10**6
 
 
 async def test_a_name_that_is_repeated_is_described_once(
@@ -148,7 +148,7 @@ def test_others_have_few_loggers_made(monkeypatch: pytest.MonkeyPatch) -> None:
     """A logger is never removed, and each part of its name is a logger."""
     known = logging.Logger.manager.loggerDict
     before = len(known)
-    monkeypatch.setattr(loggers, "MOST_LOGGERS", before + 5)
+    monkeypatch.setattr(loggers, "MAX_LOGGERS", before + 5)
 
     assert get_logger_level("nobody.asked.before") == 0
     assert len(known) == before

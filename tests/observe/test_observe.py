@@ -130,7 +130,7 @@ def test_an_invalid_report_is_refused(data: bytes) -> None:
 
 async def test_an_answer_that_is_too_large_counts_as_none(monkeypatch: pytest.MonkeyPatch) -> None:
     """However much the contexts of a network say, the asker keeps a bounded part of it."""
-    monkeypatch.setattr(observed, "MOST_BYTES", observed.ANSWER_BYTES)
+    monkeypatch.setattr(observed, "MAX_BYTES", observed.ANSWER_BYTES)
     async with two_contexts() as (one, other):
         robot = quiet_node("robot", one)
         tool = quiet_node("tool", other)

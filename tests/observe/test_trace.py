@@ -96,7 +96,7 @@ async def test_callbacks_and_arrows_are_true(way: str) -> None:
                 assert other["ts"] >= one["ts"] + one["dur"] - 0.001
 
 
-@pytest.mark.parametrize("limit", ["MOST_EVENTS", "MOST_BYTES"])
+@pytest.mark.parametrize("limit", ["MAX_EVENTS", "MAX_BYTES"])
 async def test_a_trace_is_bounded_and_counts_what_does_not_fit(
     limit: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

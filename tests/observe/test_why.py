@@ -511,7 +511,7 @@ async def test_a_long_list_of_causes_is_asked_for_in_several_questions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A process answers a bounded number of keys, and the others counted as forgotten."""
-    monkeypatch.setattr(_causes, "MOST_TOLD", 1)
+    monkeypatch.setattr(_causes, "MAX_TOLD", 1)
     async with two_nodes("local", "one", "two") as (one, two):
         inputs = [one.create_publisher(Int32, name, 10) for name in ("in_a", "in_b", "in_c")]
         taken = [two.create_subscription(Int32, name) for name in ("in_a", "in_b", "in_c")]

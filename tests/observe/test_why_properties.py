@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from aionode import Context, Node
 from aionode._process.concurrency import checkpoint
 from aionode.engine.cause_reports import CauseQuestion, answer, asked, decoded, encoded
-from aionode.engine.causes import MOST_KEPT, CauseLog, Party
+from aionode.engine.causes import MAX_KEPT, CauseLog, Party
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import String
 from aionode.observe import Caused, why
@@ -150,7 +150,7 @@ def test_causes_are_those_that_messages_had(program: list[list[Callback]], messa
                 for sent in log.sent
                 if sent.party.name in running.names
             }
-            assert len(running.expected) < MOST_KEPT
+            assert len(running.expected) < MAX_KEPT
             assert told == {
                 key: [] if before is None else [before] for key, before in running.expected.items()
             }
@@ -180,12 +180,12 @@ def test_what_is_kept_is_bounded() -> None:
     log = CauseLog()
     rare, often = (Party("publisher", "/robot", name, name.encode()) for name in ("/a", "/b"))
     log.note("message", rare, 1)
-    for number in range(2 * MOST_KEPT):
+    for number in range(2 * MAX_KEPT):
         log.note("message", often, number)
 
-    assert len(log.sent) == MOST_KEPT
+    assert len(log.sent) == MAX_KEPT
     assert log.everything()[0].party is rare
-    assert len(log.everything()) == MOST_KEPT + 1
+    assert len(log.everything()) == MAX_KEPT + 1
 
 
 @given(st.binary(max_size=300))

@@ -7,9 +7,9 @@ import itertools
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode._process.rated_lines import MOST_WAIT_NS, WAIT_NS, RatedLines
+from aionode._process.rated_lines import MAX_WAIT_NS, WAIT_NS, RatedLines
 
-STEPS = st.lists(st.tuples(st.integers(0, 2 * MOST_WAIT_NS), st.integers(1, 5)), max_size=50)
+STEPS = st.lists(st.tuples(st.integers(0, 2 * MAX_WAIT_NS), st.integers(1, 5)), max_size=50)
 
 
 def number_in(text: str) -> int:

@@ -19,7 +19,7 @@ from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from aionode.interfaces.sensor_msgs.msg import LaserScan, MultiEchoLaserScan
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.programs._urg import urg_node_driver
-from aionode.programs._urg.scip import MOST_BYTES, MOST_LINES, Reply, Scip, Socket, echoes_in
+from aionode.programs._urg.scip import MAX_BYTES, MAX_LINES, Reply, Scip, Socket, echoes_in
 from aionode.programs._urg.urg_node_driver import UrgNode
 from tests.programs.conftest import Start
 from tests.support.waiting import until
@@ -451,14 +451,14 @@ async def test_a_reply_without_end_is_not_kept() -> None:
     scip = Scip(Babbler(b"x" * 5000))
     with pytest.raises(OSError, match="it does not end; is this a lidar"):
         await scip.receive()
-    assert len(scip.buffer) <= MOST_BYTES + 5000
+    assert len(scip.buffer) <= MAX_BYTES + 5000
 
 
 async def test_a_reply_of_very_short_lines_is_a_checksum_error() -> None:
     """To check each of them would take half a second, in which no other node works."""
     line = b"0\n"  # an empty one, with its checksum
     reply = await Scip(Babbler(b"MD\n99b\n" + line * 50_000 + b"\n")).receive()
-    assert len(reply.lines) <= MOST_LINES
+    assert len(reply.lines) <= MAX_LINES
     with pytest.raises(OSError, match="checksum error"):
         reply.check()
 

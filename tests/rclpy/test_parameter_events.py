@@ -14,7 +14,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameter_events
 from tests.support.peers import isolated_environment
 
-MOST_ROUNDS = 200
+MAX_ROUNDS = 200
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ class Listener:
 
     def hears(self, name: str, change: Callable[[], object] = lambda: None) -> bool:
         """Repeat a change until an event about a parameter comes, and return whether it does."""
-        for _ in range(MOST_ROUNDS):
+        for _ in range(MAX_ROUNDS):
             change()
             self._executor.spin_once(timeout_sec=0.1)
             if name in self.names:

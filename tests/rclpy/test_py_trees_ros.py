@@ -618,7 +618,7 @@ def test_a_stream_waits_for_its_first_listener(node: Any) -> None:
 def test_streams_are_bounded(node: Any) -> None:
     """Another process may open them without end."""
     exchange = exchange_of(node)
-    topics = [opened(exchange) for _ in range(blackboard.MOST_STREAMS + 1)]
+    topics = [opened(exchange) for _ in range(blackboard.MAX_STREAMS + 1)]
 
     assert [view.topic_name for view in exchange.views] == topics[1:]
 

@@ -33,7 +33,7 @@ __all__ = ["run", "start"]
 
 ROOT: Final = Path(__file__).parent.parent.parent
 REQUEST_BYTES: Final = 1 << 17
-MOST_STREAMS: Final = 8
+MAX_STREAMS: Final = 8
 FIRST_FREE: Final = 256
 """Descriptors from here on are used by nobody else."""
 PR_SET_CHILD_SUBREAPER: Final = 36
@@ -258,7 +258,7 @@ def import_all(name: str) -> None:
 def serve(connection: socket.socket) -> dict[str, Any] | None:
     """Fork for each request, and return the request in the child; None at the end."""
     while True:
-        data, streams, _, _ = socket.recv_fds(connection, REQUEST_BYTES, MOST_STREAMS)
+        data, streams, _, _ = socket.recv_fds(connection, REQUEST_BYTES, MAX_STREAMS)
         if not data:
             return None
         # The process between ends at once, so that the program becomes a child of the test.

@@ -39,7 +39,7 @@ __all__ = [
 HEAVIEST = 160
 """The most values that a message may have to be drawn as a whole."""
 
-MOST_ELEMENTS = 4
+MAX_ELEMENTS = 4
 """The longest random sequence: further elements would test nothing new."""
 
 INTEGERS = {
@@ -152,7 +152,7 @@ def values(kind: FieldType, *, nan: bool = False) -> st.SearchStrategy[Any]:
     if kind.container == "single":
         return single_values(kind, nan=nan)
     least = kind.size if kind.container == "array" else 0
-    most = min(kind.size or MOST_ELEMENTS, MOST_ELEMENTS)
+    most = min(kind.size or MAX_ELEMENTS, MAX_ELEMENTS)
     if kind.form == "bytes":
         return st.binary(min_size=least, max_size=max(least, most))
     if kind.form == "list" and kind.container != "array":

@@ -72,10 +72,10 @@ MESSAGE_HEADER: Final = struct.Struct("<BQHIQQ")
 CHUNK_HEADER: Final = struct.Struct("<BQQQQI")
 INDEX_HEADER: Final = struct.Struct("<BQHI")
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
-MOST_PARTS: Final = 512
+MAX_PARTS: Final = 512
 """Maximum number of pieces per `writev`; systems have a limit, which is 1024 on Linux."""
 
-MOST_AT_ONCE: Final = 256 << 10
+MAX_AT_ONCE: Final = 256 << 10
 """Maximum number of bytes per write. Many kernels run nothing else on that processor meanwhile,
 and the event loop may have to wait: 6 MB were seen to take 15 ms and longer."""
 
@@ -527,13 +527,13 @@ class McapWriter:
 def write_all(fd: int, pieces: Iterable[bytes | memoryview]) -> None:
     """Write all pieces, in as many calls as necessary, keeping each call short."""
     waiting = [
-        memoryview(piece)[at : at + MOST_AT_ONCE]
+        memoryview(piece)[at : at + MAX_AT_ONCE]
         for piece in pieces
-        for at in range(0, len(piece), MOST_AT_ONCE)
+        for at in range(0, len(piece), MAX_AT_ONCE)
     ]
     while waiting:
-        ends = accumulate(len(piece) for piece in waiting[:MOST_PARTS])
-        count = sum(end <= MOST_AT_ONCE for end in ends)
+        ends = accumulate(len(piece) for piece in waiting[:MAX_PARTS])
+        count = sum(end <= MAX_AT_ONCE for end in ends)
         written = os.writev(fd, waiting[: max(count, 1)])
         while waiting and written >= len(waiting[0]):
             written -= len(waiting.pop(0))

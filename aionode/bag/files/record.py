@@ -9,15 +9,15 @@ import msgspec
 from aionode.clock import ClockType, Time
 from aionode.qos import QoSProfile
 
-__all__ = ["MOST_NS", "Record", "TopicInfo", "time_of"]
+__all__ = ["MAX_NS", "Record", "TopicInfo", "time_of"]
 
-MOST_NS: Final = 2**63 - 1
+MAX_NS: Final = 2**63 - 1
 """The latest time that a `Time` can represent, in nanoseconds."""
 
 
 def time_of(ns: int) -> Time:
     """Convert nanoseconds since 1970 to a `Time`, clamping times that it cannot represent."""
-    return Time(nanoseconds=min(max(ns, 0), MOST_NS), clock_type=ClockType.ROS_TIME)
+    return Time(nanoseconds=min(max(ns, 0), MAX_NS), clock_type=ClockType.ROS_TIME)
 
 
 class TopicInfo(msgspec.Struct, kw_only=True, eq=False):

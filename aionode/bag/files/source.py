@@ -18,7 +18,7 @@ from aionode.bag.files.chunks import MESSAGE, rows_of
 from aionode.bag.files.compression import LIMIT_VARIABLE, TooLargeError, plain_file, plain_message
 from aionode.bag.files.order import in_order
 from aionode.bag.files.qos import readable_profiles
-from aionode.bag.files.record import MOST_NS, Record, TopicInfo
+from aionode.bag.files.record import MAX_NS, Record, TopicInfo
 from aionode.bag.files.summary import heads_of, whole_summary
 from aionode.errors import BagError
 
@@ -56,7 +56,7 @@ class Source(Protocol):
     Attributes:
         path: Its path.
         topics: Its topics, with counts.
-        start_ns: The time of its first message; `MOST_NS` if there is none.
+        start_ns: The time of its first message; `MAX_NS` if there is none.
         end_ns: The time of its last message; 0 if there is none.
     """
 
@@ -137,7 +137,7 @@ class McapSource:
         ]
         if statistics.message_count:
             spans.append((statistics.message_start_time, statistics.message_end_time))
-        self.start_ns = min((start for start, _ in spans), default=MOST_NS)
+        self.start_ns = min((start for start, _ in spans), default=MAX_NS)
         self.end_ns = max((end for _, end in spans), default=0)
 
     def records(

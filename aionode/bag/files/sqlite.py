@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 from aionode.bag.files.compression import plain_file, plain_message
 from aionode.bag.files.qos import readable_profiles
-from aionode.bag.files.record import MOST_NS, Record, TopicInfo
+from aionode.bag.files.record import MAX_NS, Record, TopicInfo
 from aionode.bag.files.source import DAMAGE, damaged
 from aionode.errors import BagError, brief
 
@@ -24,7 +24,7 @@ STEPS: Final = 100_000
 """Steps of SQLite's virtual machine between two checks of their number."""
 
 STEPS_FOR_A_BYTE: Final = 10
-LEAST_STEPS: Final = 10_000_000
+MIN_STEPS: Final = 10_000_000
 
 COUNT: Final = (
     "SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages "
@@ -78,7 +78,7 @@ class SqliteSource:
 
     def _limit_steps(self, base: sqlite3.Connection, size: int) -> None:
         """Interrupt queries that take more steps than an intact file of this size needs."""
-        most = LEAST_STEPS + STEPS_FOR_A_BYTE * size
+        most = MIN_STEPS + STEPS_FOR_A_BYTE * size
         self._steps = 0
 
         def are_too_many() -> bool:
@@ -89,7 +89,7 @@ class SqliteSource:
 
     def _count(self) -> None:
         """Count the messages of each topic."""
-        self.start_ns, self.end_ns = MOST_NS, 0
+        self.start_ns, self.end_ns = MAX_NS, 0
         self._strays: list[tuple[object, int]] = []
         try:
             counted = self._base.execute(COUNT).fetchall()

@@ -7,7 +7,7 @@ from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Final
 
-from aionode.bag.files.record import MOST_NS
+from aionode.bag.files.record import MAX_NS
 from aionode.bag.recording.services import offered
 from aionode.interfaces.rosbag2_interfaces.msg import ReadSplitEvent
 
@@ -32,7 +32,7 @@ class FilesInPlay:
         bags: The bags.
 
     Attributes:
-        next_ns: The time at which the next file starts; `MOST_NS` if there is none.
+        next_ns: The time at which the next file starts; `MAX_NS` if there is none.
     """
 
     def __init__(self, node: Node, bags: list[Bag]) -> None:
@@ -45,7 +45,7 @@ class FilesInPlay:
             for (_, closed), (start_ns, opened) in zip(bag.files, bag.files[1:], strict=False)
         )
         self._next = 0
-        self.next_ns = MOST_NS
+        self.next_ns = MAX_NS
 
     def go_to(self, time_ns: int) -> None:
         """Record the time from which the player reads."""
@@ -54,7 +54,7 @@ class FilesInPlay:
 
     def pass_to(self, time_ns: int) -> None:
         """Report each file that is opened at or before a time."""
-        while self.next_ns <= time_ns < MOST_NS:
+        while self.next_ns <= time_ns < MAX_NS:
             _, closed, opened = self._files[self._next]
             name = self._node.get_fully_qualified_name()
             if self._splits is not None:
@@ -66,7 +66,7 @@ class FilesInPlay:
 
     def _note(self) -> None:
         has_next = self._next < len(self._files)
-        self.next_ns = self._files[self._next][0] if has_next else MOST_NS
+        self.next_ns = self._files[self._next][0] if has_next else MAX_NS
 
 
 def in_order_sent(records: Iterator[Record]) -> Iterator[tuple[int, Record]]:

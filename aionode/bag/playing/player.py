@@ -12,7 +12,7 @@ from aionode._process.concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.bag._bag import Batches, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._copy import merged_records
 from aionode.bag._selection import CAUSES, Selection
-from aionode.bag.files.record import MOST_NS, time_of
+from aionode.bag.files.record import MAX_NS, time_of
 from aionode.bag.playing.files import FilesInPlay, in_order_sent
 from aionode.bag.playing.requests import SOURCES, RequestSender
 from aionode.bag.playing.services import serve_player
@@ -130,7 +130,7 @@ class Player:
         self._loop = loop
         self._start_offset = start_offset or Duration()
         self._duration = duration
-        self._until_ns = MOST_NS if until is None else until.nanoseconds
+        self._until_ns = MAX_NS if until is None else until.nanoseconds
         self._delay_sec = delay_sec
         self._selection = selection
         self._remap = dict(remap or {})
@@ -322,7 +322,7 @@ class Player:
         """
         if not (self._is_paused and self._is_playing) or self._steps:
             return 0
-        wanted = self._steps = count or MOST_NS
+        wanted = self._steps = count or MAX_NS
         self._stepped = asyncio.get_running_loop().create_future()
         self._wake.set()
         await self._stepped
@@ -393,7 +393,7 @@ class Player:
     def _records(self, start_ns: int, end_ns: int) -> Iterator[tuple[int, Record]]:
         """Return the records that are played, in order, each after its time."""
         start = None if start_ns <= self.start.nanoseconds else time_of(start_ns)
-        end = None if end_ns == MOST_NS else time_of(end_ns)
+        end = None if end_ns == MAX_NS else time_of(end_ns)
         records = merged_records(self.bags, self._selection, start, end)
         if self._in_order_sent:
             return in_order_sent(records)

@@ -26,7 +26,7 @@ SOURCES: Final = {
 }
 """The events to take requests from: the server's, or the client's."""
 
-MOST_PENDING: Final = 1000
+MAX_PENDING: Final = 1000
 """Maximum number of unanswered requests; further ones are skipped with a warning."""
 
 SEND_GOAL: Final = "send_goal/_service_event"
@@ -132,9 +132,9 @@ class RequestSender:
         sent.add_done_callback(accepted)
 
     def _has_room(self, name: str) -> bool:
-        if len(self._pending) < MOST_PENDING:
+        if len(self._pending) < MAX_PENDING:
             return True
-        self._tell(f"{name}: requests are skipped, as {MOST_PENDING} are still unanswered")
+        self._tell(f"{name}: requests are skipped, as {MAX_PENDING} are still unanswered")
         return False
 
     def _is_there(self, name: str, ready: bool) -> bool:

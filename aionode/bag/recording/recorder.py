@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["Recorder", "TopicStats", "adapted_qos"]
 
 CACHE_BYTES: Final = 100 << 20
-LEAST_DEPTH: Final = 1000
+MIN_DEPTH: Final = 1000
 """Minimum depth of subscriptions: the loop may be busy for some milliseconds."""
 
 CAUSES_S: Final = 1.0
@@ -630,7 +630,7 @@ def adapted_qos(offered: list[QoSProfile]) -> QoSProfile:
         each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered
     )
     return QoSProfile(
-        depth=max([LEAST_DEPTH, *(each.depth for each in offered)]),
+        depth=max([MIN_DEPTH, *(each.depth for each in offered)]),
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
     )

@@ -21,7 +21,7 @@ __all__ = ["Key", "Recording", "TopicStats", "summary_of"]
 
 Key = tuple[str, str, str]
 
-MOST_LENT: Final = 32 << 20
+MAX_LENT: Final = 32 << 20
 """Bytes that may wait for the disk in memory that other processes lend; beyond that, messages are
 copied. A process lends only so much, and sends the rest at a higher cost.
 """
@@ -101,7 +101,7 @@ class Recording:
     def owned(self, topic: int, lent: memoryview) -> Parts:
         """Return a message in lent memory: a copy, unless it is written soon."""
         latched_depth = self._topics[topic][1]
-        if self._keeps or latched_depth or self.thread.waiting_bytes > MOST_LENT:
+        if self._keeps or latched_depth or self.thread.waiting_bytes > MAX_LENT:
             return bytes(lent)
         return [lent]
 

@@ -38,10 +38,10 @@ TURN: Final = 32
 TURN_BYTES: Final = 32 << 10
 """A row counts as one more for each of this many bytes, as large ones take longer."""
 
-MOST_ROWS: Final = 1_000_000
+MAX_ROWS: Final = 1_000_000
 """Maximum rows that wait or are kept for a snapshot: small messages need more than their bytes."""
 
-LEAST_WAITING: Final = 16 << 20
+MIN_WAITING: Final = 16 << 20
 """Minimum bytes that may wait for the thread in snapshot mode, however few are kept."""
 
 
@@ -102,7 +102,7 @@ class WriterThread:
         self._topics = topics
         self._cache_bytes = cache_bytes
         self._cache_ns = cache_ns
-        self._waiting_bytes = max(cache_bytes, LEAST_WAITING) if snapshot else cache_bytes
+        self._waiting_bytes = max(cache_bytes, MIN_WAITING) if snapshot else cache_bytes
         self._on_failure = on_failure
         self._before_close = before_close
         self._rows: deque[Row | Callable[[], None]] = deque()
@@ -130,7 +130,7 @@ class WriterThread:
         """Enqueue a row, and return whether there was room for it."""
         size = row.size
         waiting = len(self._rows)
-        if waiting and (self.waiting_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS):
+        if waiting and (self.waiting_bytes + size > self._waiting_bytes or waiting >= MAX_ROWS):
             return False
         self._put_bytes += size
         self._rows.append(row)
@@ -251,7 +251,7 @@ class WriterThread:
 
     def _is_too_much(self, kept: deque[Row]) -> bool:
         """Return whether the oldest row has to be dropped."""
-        if self._kept_bytes > self._cache_bytes or len(kept) > MOST_ROWS:
+        if self._kept_bytes > self._cache_bytes or len(kept) > MAX_ROWS:
             return True
         return 0 < self._cache_ns < kept[-1].time_ns - kept[0].time_ns
 

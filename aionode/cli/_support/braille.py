@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COLOURS", "Line", "chart"]
 
-MOST_POINTS: Final = 10_000
+MAX_POINTS: Final = 10_000
 """Maximum number of points of a line; beyond it, every four become their lowest and highest."""
 
 COLOURS: Final = ("blue", "red", "green", "yellow", "magenta", "cyan")
@@ -28,7 +28,7 @@ DOTS: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 LABEL: Final = 10
 """The width of a label and the axis behind it, in characters."""
 
-LEAST_WIDTH: Final = LABEL + 10
+MIN_WIDTH: Final = LABEL + 10
 
 
 @dataclass(slots=True)
@@ -54,7 +54,7 @@ class Line:
         if self.keep_ns is not None:
             while points[0][0] < time_ns - self.keep_ns:
                 points.popleft()
-        if len(points) > MOST_POINTS:
+        if len(points) > MAX_POINTS:
             self.points = thinned(points)
 
     def between(self, start_ns: int, end_ns: int) -> list[tuple[int, float]]:
@@ -95,7 +95,7 @@ def chart(
         start_ns: The time at the left edge.
         end_ns: The time at the right edge.
     """
-    columns = max(width, LEAST_WIDTH) - LABEL
+    columns = max(width, MIN_WIDTH) - LABEL
     rows = max(height - 1 - len(lines), 3)
     shown = [line.between(start_ns, end_ns) for line in lines]
     low, high = scale_of(value for points in shown for _, value in points)

@@ -6,15 +6,15 @@ from aionode.errors import NameValidationException
 
 __all__ = ["limited", "one_line"]
 
-MOST_CHARACTERS = 1000
+MAX_CHARACTERS = 1000
 """Maximum length of an error text: it may quote input of any length."""
 
 
 def limited(text: str) -> str:
     """Return a text, omitting its middle if it is too long."""
-    if len(text) <= MOST_CHARACTERS:
+    if len(text) <= MAX_CHARACTERS:
         return text
-    return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"
+    return f"{text[: MAX_CHARACTERS // 2]} ... {text[-MAX_CHARACTERS // 2 :]}"
 
 
 def one_line(error: BaseException) -> str:

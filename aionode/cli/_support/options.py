@@ -44,7 +44,7 @@ verbose_option = click.option(
     "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
 )
 
-MOST_SECONDS = 1e9
+MAX_SECONDS = 1e9
 """Upper limit of durations in seconds: about thirty years, within the range of every clock."""
 
 MOST = 2**31 - 1
@@ -64,13 +64,13 @@ class Number(click.FloatRange):
         return number
 
 
-positive = Number(min=0, min_open=True, max=MOST_SECONDS)
+positive = Number(min=0, min_open=True, max=MAX_SECONDS)
 """A number of seconds above zero."""
 
-seconds = Number(min=0, max=MOST_SECONDS)
+seconds = Number(min=0, max=MAX_SECONDS)
 """A number of seconds."""
 
-hertz = Number(min=1 / MOST_SECONDS, max=1e9)
+hertz = Number(min=1 / MAX_SECONDS, max=1e9)
 """A rate whose period is within the range of every clock."""
 
 natural = click.IntRange(min=1, max=MOST)

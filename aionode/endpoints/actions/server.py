@@ -32,7 +32,7 @@ from aionode.engine.causes import CAUSES, Party, add_cause
 from aionode.engine.reports.limits import tell_full, tell_rejected
 from aionode.engine.rules.early_cancels import EarlyCancels
 from aionode.engine.rules.goal import (
-    MOST_REJECTIONS,
+    MAX_REJECTIONS,
     CancelCode,
     GoalKey,
     GoalResponse,
@@ -204,7 +204,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._goals = AlarmedGoalStore(self._time_base, goals_limit, timeout_ns, limit_bytes)
         self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
-        self._rejections: Recent[bytes, str] = Recent(MOST_REJECTIONS)
+        self._rejections: Recent[bytes, str] = Recent(MAX_REJECTIONS)
         kept: dict[str, Any] = {"keep_all": True, "slice_ns": self._callbacks.slice_ns}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), **kept)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, **kept)

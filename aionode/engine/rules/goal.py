@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL_GOALS",
-    "MOST_REJECTIONS",
+    "MAX_REJECTIONS",
     "TRANSITIONS",
     "CancelCode",
     "CancelResponse",
@@ -81,7 +81,7 @@ class CancelResponse(Enum):
 # Why a goal was rejected or aborted
 
 
-MOST_REJECTIONS = 100
+MAX_REJECTIONS = 100
 """Most rejected goals whose reason a server keeps: their clients ask for it at once."""
 
 

@@ -97,7 +97,7 @@ GRAPH_BYTES: Final = 64 << 20
 GRAPH_BYTES_VARIABLE: Final = "AIONODE_GRAPH_BYTES"
 """The environment variable that changes the limit."""
 
-LEAST_BYTES: Final = 65_536
+MIN_BYTES: Final = 65_536
 """The minimum of either limit: messages up to this size are sent at once."""
 
 
@@ -237,7 +237,7 @@ def choose_bytes(
     environ: Mapping[str, str], variable: str, argument: str, given: int | None, usual: int
 ) -> int:
     """Return a limit in bytes, from the argument or the environment."""
-    fits = f"use an integer number of bytes, at least {LEAST_BYTES}"
+    fits = f"use an integer number of bytes, at least {MIN_BYTES}"
     if given is None:
         text = environ.get(variable, "").strip() or str(usual)
         source, known = variable, text.isascii() and text.isdigit() and len(text) <= 18
@@ -246,7 +246,7 @@ def choose_bytes(
         raise TypeError(f"{argument}: {brief(given)} given; {fits}")
     else:
         source, text = argument, str(given)
-    if given < LEAST_BYTES:
+    if given < MIN_BYTES:
         raise ConfigurationError(source, text, fits)
     return given
 

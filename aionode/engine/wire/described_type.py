@@ -41,10 +41,10 @@ KINDS: Final = {
 CONTAINERS: Final = ("single", "array", "bounded", "unbounded")
 PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 
-MOST_TYPES: Final = 1_000
+MAX_TYPES: Final = 1_000
 """Maximum number of types in a description; MoveIt's largest action uses 80."""
 
-MOST_FIELDS: Final = 10_000
+MAX_FIELDS: Final = 10_000
 """Maximum total number of fields in a description."""
 
 DEEPEST: Final = 50
@@ -175,11 +175,11 @@ class DescribedTypes:
         self._made: dict[str, type[Message]] = {}
         self._size_bytes: dict[str, int] = {}  # of a new message of each class
         self._open: list[str] = []  # types being created; each uses the next
-        if len(parts) > MOST_TYPES:
-            raise self._error(f"it has {len(parts)} types, at most {MOST_TYPES} are allowed")
+        if len(parts) > MAX_TYPES:
+            raise self._error(f"it has {len(parts)} types, at most {MAX_TYPES} are allowed")
         count = sum(len(part.fields) for part in parts)
-        if count > MOST_FIELDS:
-            raise self._error(f"it has {count} fields, at most {MOST_FIELDS} are allowed")
+        if count > MAX_FIELDS:
+            raise self._error(f"it has {count} fields, at most {MAX_FIELDS} are allowed")
 
     def _error(self, problem: str) -> TypeDescriptionError:
         return TypeDescriptionError(self.name, problem)

@@ -42,7 +42,7 @@ EPISODES = 10
 LONGEST_SEC = 20.0
 PARTS = 16
 CHUNK = 4
-MOST_CHUNKS = 200
+MAX_CHUNKS = 200
 """Maximum number of chunks, which last about a minute and a half."""
 
 NEAR = 2_400
@@ -169,7 +169,7 @@ async def drive(node: Node, weights: Numbers) -> ActorStats:
     asked = itertools.count()
 
     def policy(observation: dict[str, npt.NDArray[Any]]) -> Numbers:
-        if next(asked) == MOST_CHUNKS:
+        if next(asked) == MAX_CHUNKS:
             raise LookupError("the policy does not find the ball; record more demonstrations")
         seen = look(observation["observation.images.front"])
         chunk = (seen @ weights).reshape(CHUNK, 2)

@@ -21,7 +21,7 @@ __all__ = ["Channels"]
 DEPTH: Final = 100
 """Messages of a channel that may wait for the client; the outbox limits their bytes."""
 
-MOST_QUESTIONS: Final = 8
+MAX_QUESTIONS: Final = 8
 """Types requested from other nodes at a time."""
 
 WARNING: Final = 1
@@ -63,7 +63,7 @@ class Channels:
         services = everyone(self._session.graph.services())
         self._withdraw(self._topics, topics, "unadvertise", "channelIds")
         self._withdraw(self._services, services, "unadvertiseServices", "serviceIds")
-        room = asyncio.Semaphore(MOST_QUESTIONS)
+        room = asyncio.Semaphore(MAX_QUESTIONS)
         async with asyncio.TaskGroup() as tasks:
             for named in sorted(topics - set(self._topics)):
                 tasks.create_task(self._announce(named, room, self._channel))

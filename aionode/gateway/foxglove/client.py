@@ -42,10 +42,10 @@ SETTLING_SEC: Final = 0.1
 """How long after a change of the graph to wait for further ones: a starting robot makes
 hundreds."""
 
-MOST_MALFORMED: Final = 100
+MAX_MALFORMED: Final = 100
 """Number of frames that are not valid ops after which a client is disconnected."""
 
-MOST_CHANNELS: Final = 1000
+MAX_CHANNELS: Final = 1000
 """Maximum number of channels that a client may advertise."""
 
 ERROR: Final = 2
@@ -73,7 +73,7 @@ async def serve_frames(
         try:
             async for frame in incoming:
                 await client.take(frame)
-                if client.malformed > MOST_MALFORMED:
+                if client.malformed > MAX_MALFORMED:
                     break
         finally:
             watching.cancel()
@@ -239,8 +239,8 @@ class Client:
             raise MessageError(f"encoding of {channel.topic}", problem)
         if channel.id in self._published:
             raise MessageError("advertise", f"channel {channel.id} is already advertised")
-        if len(self._published) >= MOST_CHANNELS:
-            raise MessageError("advertise", f"{MOST_CHANNELS} channels are advertised, the limit")
+        if len(self._published) >= MAX_CHANNELS:
+            raise MessageError("advertise", f"{MAX_CHANNELS} channels are advertised, the limit")
         self._published[channel.id] = channel  # before it waits: others may advertise meanwhile
         try:
             await self._session.advertise(channel.topic, channel.schema_name)

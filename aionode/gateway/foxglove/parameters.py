@@ -22,10 +22,10 @@ __all__ = ["Parameters"]
 EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
-MOST_FOLLOWED: Final = 10_000
+MAX_FOLLOWED: Final = 10_000
 """Maximum number of parameters that a client may follow."""
 
-MOST_CHARACTERS: Final = 1000
+MAX_CHARACTERS: Final = 1000
 """The longest name of a followed parameter, in characters."""
 
 
@@ -133,8 +133,8 @@ class Parameters:
             MessageError: there are too many names; or some do not consist of a node, a dot and a
                 parameter, while the others are followed.
         """
-        if len(self._followed) + len(names) > MOST_FOLLOWED or any(
-            len(name) > MOST_CHARACTERS for name in names
+        if len(self._followed) + len(names) > MAX_FOLLOWED or any(
+            len(name) > MAX_CHARACTERS for name in names
         ):
             raise MessageError("subscribeParameterUpdates", "too many names, or too long ones")
         if self._events is None:
@@ -217,5 +217,5 @@ def by_node(names: Iterable[str], failures: Failures) -> dict[str, list[str]]:
         if dot and own:
             names_of[node].append(own)
         else:
-            failures.add(repr(name[:MOST_CHARACTERS]), "it does not have the form /node.parameter")
+            failures.add(repr(name[:MAX_CHARACTERS]), "it does not have the form /node.parameter")
     return names_of

@@ -32,7 +32,7 @@ __all__ = [
     "CLIENT_GONE",
     "EVENTS",
     "HEADERS",
-    "MOST_SEC",
+    "MAX_SEC",
     "Asked",
     "Stream",
     "body_of",
@@ -48,7 +48,7 @@ EVENTS: Final = "text/event-stream"
 ALIVE: Final = b": alive\n\n"
 """A comment in server-sent events that keeps the connection alive."""
 
-MOST_SEC: Final = 3600.0
+MAX_SEC: Final = 3600.0
 """The longest wait that a request may ask for, in seconds."""
 
 ALIVE_SEC: Final = 2.0

@@ -26,7 +26,7 @@ from aionode.gateway.http.answers import (
     CLIENT_GONE,
     EVENTS,
     HEADERS,
-    MOST_SEC,
+    MAX_SEC,
     Asked,
     Stream,
     body_of,
@@ -302,7 +302,7 @@ async def call(asked: Asked) -> Response:
         asked.json(),
         type_name=asked.type_name,
         timeout_sec=asked.number(
-            "timeout_sec", asked.session.wait_sec(None), asked.session.wait_sec(MOST_SEC)
+            "timeout_sec", asked.session.wait_sec(None), asked.session.wait_sec(MAX_SEC)
         ),
     )
     return json_response(json_of(response))

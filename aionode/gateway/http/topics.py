@@ -12,7 +12,7 @@ from aionode.gateway.http.answers import (
     ALIVE,
     EVENTS,
     HEADERS,
-    MOST_SEC,
+    MAX_SEC,
     Asked,
     Stream,
     event,
@@ -36,7 +36,7 @@ PICTURES: Final = "multipart/x-mixed-replace"
 ANY_PICTURE: Final = "image/*"
 """A JPEG, or a compressed image unchanged."""
 
-MOST_WIDTH: Final = 8192
+MAX_WIDTH: Final = 8192
 
 WAIT_SEC: Final = 5.0
 """How long a request waits for a message by default, in seconds."""
@@ -59,7 +59,7 @@ async def answer_topic(asked: Asked) -> Response:
     if media_type == EVENTS:
         return await events(asked, topic)
     newest = await Newest.of(asked, topic)
-    received = await newest.within(asked.number("timeout_sec", WAIT_SEC, MOST_SEC))
+    received = await newest.within(asked.number("timeout_sec", WAIT_SEC, MAX_SEC))
     if media_type == "application/json":
         return json_response(await asked.session.json_of(received))
     form = picture_form(asked, media_type)
@@ -116,7 +116,7 @@ def picture_type(accept: str) -> str | None:
 
 async def events(asked: Asked, topic: str) -> Response:
     """Return the messages of a topic as server-sent events."""
-    period_sec = asked.number("min_period_sec", 0.0, MOST_SEC)
+    period_sec = asked.number("min_period_sec", 0.0, MAX_SEC)
     await asked.session.subscribe(
         topic,
         asked.type_name,
@@ -162,7 +162,7 @@ class Newest:
     async def of(cls, asked: Asked, topic: str) -> Newest:
         """Subscribe to a topic."""
         newest = cls(topic)
-        period_sec = asked.number("min_period_sec", 0.0, MOST_SEC)
+        period_sec = asked.number("min_period_sec", 0.0, MAX_SEC)
         await asked.session.subscribe(
             topic, asked.type_name, frame=newest.put, key=topic, depth=1, min_period_sec=period_sec
         )
@@ -204,7 +204,7 @@ def picture_form(asked: Asked, media_type: str) -> Form:
     Raises:
         HTTPException: a parameter is invalid (400).
     """
-    width = round(asked.number("width", 0.0, MOST_WIDTH))
+    width = round(asked.number("width", 0.0, MAX_WIDTH))
     quality = None
     if "quality" in asked.request.query_params:
         quality = max(1, round(asked.number("quality", 0.0, 100.0)))

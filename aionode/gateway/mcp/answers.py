@@ -10,9 +10,9 @@ import msgspec
 
 from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError, ToolError
 
-__all__ = ["MOST_BYTES", "answer", "bounded", "failure"]
+__all__ = ["MAX_BYTES", "answer", "bounded", "failure"]
 
-MOST_BYTES: Final = 9_500
+MAX_BYTES: Final = 9_500
 """The longest JSON of an answer. An answer contains it twice, as text and structured: 20 kB in
 all."""
 
@@ -20,13 +20,13 @@ SIZES: Final = ((400, 4000), (150, 1500), (60, 600), (25, 250), (10, 100), (4, 4
 """How many entries and characters of long lists and texts to keep; the next step is tried until all
 fits."""
 
-MOST_LEVELS: Final = 30
+MAX_LEVELS: Final = 30
 """How deeply nested an answer may be."""
 
 
 def answer(values: Mapping[str, Any], *, is_error: bool = False) -> types.CallToolResult:
-    """Return the result of a tool: its values as JSON, shortened to `MOST_BYTES`."""
-    fitting = bounded(values, MOST_BYTES)
+    """Return the result of a tool: its values as JSON, shortened to `MAX_BYTES`."""
+    fitting = bounded(values, MAX_BYTES)
     text = msgspec.json.encode(fitting).decode()
     content = [types.TextContent(type="text", text=text)]
     return types.CallToolResult(
@@ -46,7 +46,7 @@ def failure(error: Exception) -> types.CallToolResult:
     elif isinstance(error, InterfaceNotFoundError):
         code = "not_found"
     text = str(error) or "no answer in time; try again, or wait longer"
-    fitting = bounded({"error": text, "code": code}, MOST_BYTES)
+    fitting = bounded({"error": text, "code": code}, MAX_BYTES)
     return types.CallToolResult(
         content=[types.TextContent(type="text", text=fitting["error"])],
         structured_content=fitting,
@@ -71,7 +71,7 @@ def cut(value: Any, items: int, characters: int, parts: Iterator[int], level: in
     The value and each value in it consume one of `parts`; when these are used up, the rest is
     omitted.
     """
-    if level > MOST_LEVELS or next(parts, None) is None:
+    if level > MAX_LEVELS or next(parts, None) is None:
         return "..."
     if isinstance(value, str):
         if len(value) <= characters:

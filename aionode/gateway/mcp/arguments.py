@@ -15,7 +15,7 @@ __all__ = ["Arguments", "Nothing", "fitting", "meant", "schema_of"]
 
 ArgumentsT = TypeVar("ArgumentsT", bound="Arguments")
 
-MOST_NAMED: Final = 10
+MAX_NAMED: Final = 10
 """Number of names listed by an error if none is similar to the given one."""
 
 
@@ -63,5 +63,5 @@ def meant(name: object, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(str(name), names, 3)
     if close:
         return f"; did you mean {' or '.join(close)}?"
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return f"; use one of {', '.join(names[:MOST_NAMED])}{more}" if names else "; there are none"
+    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+    return f"; use one of {', '.join(names[:MAX_NAMED])}{more}" if names else "; there are none"

@@ -23,10 +23,10 @@ NUMBERS: Final = frozenset(
 )
 """The types of fields that contain numbers."""
 
-MOST_PATHS: Final = 64
+MAX_PATHS: Final = 64
 """The most fields of a message for which statistics are kept."""
 
-MOST_ELEMENTS: Final = 1000
+MAX_ELEMENTS: Final = 1000
 """The most messages of an array for which statistics are kept."""
 
 
@@ -121,7 +121,7 @@ def rounded(number: float) -> float:
 
 def numbers_of(message: Message) -> Iterator[tuple[str, Any]]:
     """Yield the paths and values of the numbers in a message, except those of its stamps."""
-    yield from list(walked(message, ""))[:MOST_PATHS]
+    yield from list(walked(message, ""))[:MAX_PATHS]
 
 
 def walked(message: Message, prefix: str) -> Iterator[tuple[str, Any]]:
@@ -134,7 +134,7 @@ def walked(message: Message, prefix: str) -> Iterator[tuple[str, Any]]:
             if each.type.container == "single":
                 yield from walked(value, f"{path}.")
             else:
-                yield from of_elements(value[:MOST_ELEMENTS], path)
+                yield from of_elements(value[:MAX_ELEMENTS], path)
         elif each.type.kind in NUMBERS:
             yield path, [value] if each.type.container == "single" else value
 

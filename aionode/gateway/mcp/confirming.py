@@ -29,7 +29,7 @@ __all__ = ["Asker", "Question", "Questions"]
 ASK_SEC: Final = 120.0
 """How long to wait for a person's answer, in seconds."""
 
-MOST_QUESTIONS: Final = 1000
+MAX_QUESTIONS: Final = 1000
 """Questions that may wait for an answer."""
 
 KEY: Final = "confirm"
@@ -57,7 +57,7 @@ class Questions:
     """The questions whose answers arrive with the repeated call; each may be answered once."""
 
     def __init__(self) -> None:
-        self._open: Recent[str, str] = Recent(MOST_QUESTIONS)
+        self._open: Recent[str, str] = Recent(MAX_QUESTIONS)
 
     def result(self, question: Question) -> types.InputRequiredResult:
         """Return the result that makes the client repeat the call with the answer."""

@@ -31,13 +31,13 @@ __all__ = ["EVENTS", "Events"]
 EVENTS: Final = "robot://events"
 """The resource that lists the events."""
 
-MOST_EVENTS: Final = 100
+MAX_EVENTS: Final = 100
 """Number of events that are kept; the newest ones."""
 
-MOST_TEXT: Final = 500
+MAX_TEXT: Final = 500
 """The longest text of an event, in characters."""
 
-MOST_SESSIONS: Final = 1000
+MAX_SESSIONS: Final = 1000
 """Number of sessions of older revisions that are notified of changes; the newest ones."""
 
 PERIOD_SEC: Final = 0.5
@@ -63,16 +63,16 @@ class Events:
         self._clients = clients
         self._bus = InMemorySubscriptionBus()
         self.listen = ListenHandler(self._bus, max_subscriptions=clients.policy.limits.clients)
-        self._kept: deque[dict[str, Any]] = deque(maxlen=MOST_EVENTS)
+        self._kept: deque[dict[str, Any]] = deque(maxlen=MAX_EVENTS)
         self._happened = asyncio.Event()
-        self._sessions: Recent[int, Any] = Recent(MOST_SESSIONS)
-        self._subscribed: Recent[int, Any] = Recent(MOST_SESSIONS)
+        self._sessions: Recent[int, Any] = Recent(MAX_SESSIONS)
+        self._subscribed: Recent[int, Any] = Recent(MAX_SESSIONS)
         self._leave: Callable[[], None] | None = None
 
     def tell(self, text: str, level: str = "info", source: str = "") -> None:
         """Keep an event, and notify clients of it."""
         time = round(self._clients.robot.time_base.system_ns() / 1e9, 3)
-        event = {"time": time, "level": level, "source": source, "text": text[:MOST_TEXT]}
+        event = {"time": time, "level": level, "source": source, "text": text[:MAX_TEXT]}
         self._kept.append(event)
         self._happened.set()
 

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from aionode.gateway.policy.policy import Verb
     from aionode.gateway.session.session import Session
 
-__all__ = ["MOST_CHARACTERS", "allowed", "commands_of", "limits_of", "may", "rights"]
+__all__ = ["MAX_CHARACTERS", "allowed", "commands_of", "limits_of", "may", "rights"]
 __all__ += ["tool_name", "topic_of", "user_names"]
 
-MOST_CHARACTERS: Final = 40
+MAX_CHARACTERS: Final = 40
 """The longest name of a tool: some clients cut names at 64 characters, including a prefix of their
 own."""
 
@@ -117,8 +117,8 @@ def tool_name(verb: str, name: str) -> str:
     A slash becomes a hyphen, which no ROS name contains. A name that is too long ends in a hash.
     """
     plain = f"{verb}_{name.removeprefix('/').replace('/', '-')}"
-    if len(plain) <= MOST_CHARACTERS and re.fullmatch(r"[A-Za-z0-9_-]+", plain):
+    if len(plain) <= MAX_CHARACTERS and re.fullmatch(r"[A-Za-z0-9_-]+", plain):
         return plain
     digest = hashlib.sha256(name.encode()).hexdigest()[:DIGITS]
-    kept = re.sub(r"[^A-Za-z0-9_-]", "_", plain)[: MOST_CHARACTERS - DIGITS - 1]
+    kept = re.sub(r"[^A-Za-z0-9_-]", "_", plain)[: MAX_CHARACTERS - DIGITS - 1]
     return f"{kept}-{digest}"

@@ -50,7 +50,7 @@ __all__ += [
 ]
 __all__ += ["watch"]
 
-MOST_WATCH_SEC: Final = 30.0
+MAX_WATCH_SEC: Final = 30.0
 
 LONG: Final = 4000
 """The longest summary of a single message, in bytes."""
@@ -223,7 +223,7 @@ class Watch(Arguments, frozen=True):
     """The arguments of `watch`."""
 
     topic: Topic
-    seconds: Annotated[float, Meta(gt=0, le=MOST_WATCH_SEC, description="For how long.")] = 3.0
+    seconds: Annotated[float, Meta(gt=0, le=MAX_WATCH_SEC, description="For how long.")] = 3.0
 
 
 class Seen:

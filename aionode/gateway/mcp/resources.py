@@ -10,7 +10,7 @@ import mcp_types as types
 import msgspec
 
 from aionode.errors import ToolError
-from aionode.gateway.mcp.answers import MOST_BYTES, bounded
+from aionode.gateway.mcp.answers import MAX_BYTES, bounded
 from aionode.gateway.mcp.collecting import Arrivals
 from aionode.gateway.mcp.events import EVENTS, LOG, Events
 from aionode.gateway.mcp.names import allowed, commands_of, limits_of, may, topic_of, user_names
@@ -86,7 +86,7 @@ async def read_resource(
         values = await newest(session, unquote(uri.removeprefix(TOPIC)))
     else:
         raise ToolError(uri[:200], "there is no such resource; list the resources", "not_found")
-    text = msgspec.json.encode(bounded(values, 2 * MOST_BYTES)).decode()
+    text = msgspec.json.encode(bounded(values, 2 * MAX_BYTES)).decode()
     return types.TextResourceContents(uri=uri, text=text, mime_type=JSON)
 
 
@@ -101,7 +101,7 @@ async def newest(session: Session, name: str) -> dict[str, Any]:
     await session.subscribe(topic, frame=arrivals.put, key=arrivals, depth=1)
     try:
         async with asyncio.timeout(WAIT_SEC):
-            return summarize((await arrivals.get()).message, MOST_BYTES)
+            return summarize((await arrivals.get()).message, MAX_BYTES)
     except TimeoutError:
         raise ToolError(topic, f"no message within {WAIT_SEC:g} s", "timeout") from None
 

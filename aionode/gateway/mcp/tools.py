@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from aionode.gateway.mcp.call import Call
     from aionode.gateway.session.session import Session
 
-__all__ = ["MOST_TYPED", "Tool", "Tools"]
+__all__ = ["MAX_TYPED", "Tool", "Tools"]
 
-MOST_TYPED: Final = 50
+MAX_TYPED: Final = 50
 """From this many services and actions on, they have no tools of their own."""
 
 Kind: TypeAlias = Literal["look", "change", "set", "act", "stop"]
@@ -202,7 +202,7 @@ class Tools:
         if any(rule.parameter for rule in rules):
             tools.append(SET_PARAMETER)
         services, actions = allowed(session, "services"), allowed(session, "actions")
-        if len(services) + len(actions) < MOST_TYPED:
+        if len(services) + len(actions) < MAX_TYPED:
             return [*tools, *await typed(session, services, actions)]
         return [*tools, *([CALL] if services else []), *([DO] if actions else [])]
 

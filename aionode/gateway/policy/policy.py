@@ -89,10 +89,10 @@ MEASUREMENTS: Final = frozenset(
 """Types that only report measurements. NaN and infinities have a meaning in them, defined by their
 definitions or REP 117; in any other type they would spread through a controller's arithmetic."""
 
-MOST_REMEMBERED: Final = 16_384
+MAX_REMEMBERED: Final = 16_384
 """Number of decisions and of name patterns that are cached."""
 
-MOST_CHARACTERS: Final = 1000
+MAX_CHARACTERS: Final = 1000
 """The longest name that is matched against rules, in characters."""
 
 READ_ONLY: Final = (
@@ -575,7 +575,7 @@ class Policy(Part, frozen=True):
             message: The message or mapping that the client sends; None before there is one.
             private: Whether only rules with the exact name, and no pattern, can allow it.
         """
-        if len(name) > MOST_CHARACTERS:
+        if len(name) > MAX_CHARACTERS:
             return Decision(allowed=False, reason="the name is too long", code="too_large")
         rule = first_rule(self, identity, verb, name, type_name, private=private)
         if rule is None or rule in self.refuse:
@@ -592,7 +592,7 @@ class Policy(Part, frozen=True):
             return Decision(allowed=False, reason=str(error), code="out_of_limits", rule=rule)
 
 
-@lru_cache(maxsize=MOST_REMEMBERED)
+@lru_cache(maxsize=MAX_REMEMBERED)
 def first_rule(
     policy: Policy,
     identity: Identity,
@@ -667,7 +667,7 @@ def matches_type(globs: Names, type_name: str) -> bool:
     return not globs or any(pattern_of(glob).fullmatch(type_name) for glob in listed(globs))
 
 
-@lru_cache(maxsize=MOST_REMEMBERED)
+@lru_cache(maxsize=MAX_REMEMBERED)
 def pattern_of(glob: str) -> re.Pattern[str]:
     """Return the regular expression for a name with ``*`` and ``**``."""
     parts = {"**": ".*", "*": "[^/]*", "?": "[^/]"}

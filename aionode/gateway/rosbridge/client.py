@@ -32,7 +32,7 @@ AGING: Final = ("publish", "call_service", "send_action_goal")
 """Ops that may be too old after waiting for other ops of the same name, or for a standstill to
 end."""
 
-MOST_MALFORMED: Final = 100
+MAX_MALFORMED: Final = 100
 """Number of frames that are not valid ops after which a client is disconnected."""
 
 
@@ -51,7 +51,7 @@ async def serve_frames(session: Session, frames: AsyncIterable[str | bytes]) -> 
         try:
             async for frame in frames:
                 await client.take(frame)
-                if client.malformed > MOST_MALFORMED:
+                if client.malformed > MAX_MALFORMED:
                     break
         finally:
             await client.close()

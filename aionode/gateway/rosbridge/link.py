@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Link", "raw_id"]
 
-MOST_OP: Final = 60
+MAX_OP: Final = 60
 """The longest op name that is repeated in an answer, in characters."""
 
 ANSWERS: Final = {
@@ -67,7 +67,7 @@ class Link:
             op: The op.
             what: The name of what failed; by default the op.
         """
-        name = str(op["op"])[:MOST_OP] if op is not None else ""
+        name = str(op["op"])[:MAX_OP] if op is not None else ""
         text = str(error) or "no answer in time"
         if op is None or name not in ANSWERS:
             what = what or name

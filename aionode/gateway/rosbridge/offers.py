@@ -27,7 +27,7 @@ Op = dict[str, Any]
 SUCCEEDED: Final = 4
 CANCELED: Final = 5  # as in action_msgs/msg/GoalStatus
 
-MOST_PENDING: Final = 100
+MAX_PENDING: Final = 100
 """Number of requests, or goals, that a client may leave unanswered for each of its services."""
 
 CANCEL_SEC: Final = 5.0
@@ -70,8 +70,8 @@ class Offer:
         """
         if self.is_closed:
             raise ServiceError(self.name, GONE)
-        if len(self.pending) >= MOST_PENDING:
-            problem = f"the client that serves it has left {MOST_PENDING} requests unanswered"
+        if len(self.pending) >= MAX_PENDING:
+            problem = f"the client that serves it has left {MAX_PENDING} requests unanswered"
             raise ServiceError(self.name, problem)
         self.count += 1
         message_id = f"{prefix}:{self.name}:{self.count}"

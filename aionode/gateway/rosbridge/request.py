@@ -50,7 +50,7 @@ LONGEST_NAME: Final = 1000
 """The longest name, id or word in an op, in characters: they are stored, and repeated in
 answers."""
 
-MOST_FRAGMENTS: Final = 10_000
+MAX_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
 """Bytes that a fragment counts besides its content, since even empty ones take memory."""
@@ -266,8 +266,8 @@ class FragmentStore:
         """
         message_id, data = text(op, "id"), text(op, "data", most=None)
         num, total = op.get("num"), op.get("total")
-        if type(total) is not int or not 0 < total <= MOST_FRAGMENTS:
-            raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MOST_FRAGMENTS}")
+        if type(total) is not int or not 0 < total <= MAX_FRAGMENTS:
+            raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MAX_FRAGMENTS}")
         if type(num) is not int or not 0 <= num < total:
             raise MessageError("fragment.num", f"{given(op, 'num')}, use 0 to {total - 1}")
         size = len(data.encode()) + len(message_id) + OVERHEAD

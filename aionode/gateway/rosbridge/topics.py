@@ -46,7 +46,7 @@ only the newest waits, since it is late already."""
 
 PUBLISHER_DEPTH: Final = 100
 
-MOST_IDS: Final = 64
+MAX_IDS: Final = 64
 """Number of ids that a client may use for one topic."""
 
 LATCH_SEC: Final = 1.0
@@ -295,13 +295,13 @@ def plain_json(received: Received) -> bytes:
 
 
 def refuse_more(ids: Collection[str | None], message_id: str | None, field: str) -> None:
-    """Refuse one more id of a topic beyond `MOST_IDS`.
+    """Refuse one more id of a topic beyond `MAX_IDS`.
 
     Raises:
         MessageError: the topic has that many ids.
     """
-    if message_id not in ids and len(ids) >= MOST_IDS:
-        raise MessageError(field, f"the topic already has {MOST_IDS} ids, which is the limit")
+    if message_id not in ids and len(ids) >= MAX_IDS:
+        raise MessageError(field, f"the topic already has {MAX_IDS} ids, which is the limit")
 
 
 def publisher_profile(op: Op) -> QoSProfile:

@@ -27,13 +27,13 @@ PUBLIC: Final = ("/page/",)
 """The files of the page: they reveal nothing of the robot, and a page requests them without a
 token."""
 
-MOST_WRONG: Final = 10
+MAX_WRONG: Final = 10
 """Number of wrong tokens accepted from one place in a burst."""
 
 WRONG_NS: Final = S_TO_NS
 """Time after which a wrong token is forgotten, in nanoseconds."""
 
-MOST_PLACES: Final = 10_000
+MAX_PLACES: Final = 10_000
 
 HEADERS: Final = [
     (b"cross-origin-resource-policy", b"same-origin"),
@@ -132,7 +132,7 @@ class Guesses:
         self._now_ns = now_ns
         # Forgets first the place with the least recent attempt.
         self._free_ns: Recent[str, int] = Recent(
-            MOST_PLACES
+            MAX_PLACES
         )  # by place: when none of its wrong tokens count any more
 
     def check(self, address: str) -> None:
@@ -142,7 +142,7 @@ class Guesses:
             RefusedError: there were too many; its code is ``too_fast``.
         """
         ahead_ns = self._free_ns.get(place_of(address), 0) - self._now_ns()
-        if ahead_ns > (MOST_WRONG - 1) * WRONG_NS:
+        if ahead_ns > (MAX_WRONG - 1) * WRONG_NS:
             raise RefusedError(
                 f"client of {address}",
                 "too many wrong tokens came from there; try again later",

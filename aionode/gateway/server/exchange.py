@@ -31,13 +31,13 @@ TRY_AGAIN_LATER: Final = 1013
 CLOSING_SEC: Final = 1.0
 """How long a client that reads nothing may delay the end of its WebSocket, in seconds."""
 
-MOST_REASON: Final = 120
+MAX_REASON: Final = 120
 """The longest reason in a close frame, in bytes of UTF-8: RFC 6455 allows 123."""
 
 
 async def close(websocket: WebSocket, code: int, reason: str) -> None:
     """Close a WebSocket with a reason, unless it is closed, or its client reads nothing."""
-    short = reason.encode()[:MOST_REASON].decode(errors="ignore")
+    short = reason.encode()[:MAX_REASON].decode(errors="ignore")
     with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
         async with asyncio.timeout(CLOSING_SEC):
             await websocket.close(code, short)

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["HttpConnection"]
 
-MOST_HEAD: Final = 16 << 10
+MAX_HEAD: Final = 16 << 10
 """The largest head of a request, in bytes."""
 
-MOST_TOGETHER: Final = 64 << 10
+MAX_TOGETHER: Final = 64 << 10
 """Size up to which a part of an answer is copied, so that it is sent together with others."""
 
-MOST_BODY: Final = 64 << 10
+MAX_BODY: Final = 64 << 10
 """Bytes of a body that may wait for the application before reading pauses."""
 
 
@@ -36,7 +36,7 @@ class HttpConnection(Connection):
 
     def __init__(self, shared: Shared) -> None:
         super().__init__(shared)
-        self._http = h11.Connection(h11.SERVER, MOST_HEAD)
+        self._http = h11.Connection(h11.SERVER, MAX_HEAD)
         self._request: Request | None = None
         self._is_paused = False
         self._is_ending = False
@@ -85,7 +85,7 @@ class HttpConnection(Connection):
                 self._begin(event)
             elif self._request is not None and isinstance(event, h11.Data):
                 self._request.add(bytes(event.data))
-                self._is_paused = self._request.waiting_bytes > MOST_BODY
+                self._is_paused = self._request.waiting_bytes > MAX_BODY
             elif self._request is not None and isinstance(event, h11.EndOfMessage):
                 self._request.end_body()
                 self._begin_next()
@@ -129,7 +129,7 @@ class HttpConnection(Connection):
         small: list[bytes] = []
         for event in events:
             data = self._http.send(event) or b""
-            if len(data) <= MOST_TOGETHER:
+            if len(data) <= MAX_TOGETHER:
                 small.append(data)
             else:
                 self.transport.write(b"".join(small))

@@ -26,7 +26,7 @@ SLICES_IN_A_TURN: Final = 4
 """Number of slices to send before yielding to the event loop: they take about half a
 millisecond."""
 
-MOST_CONTROL_BYTES: Final = 1 << 20
+MAX_CONTROL_BYTES: Final = 1 << 20
 """Bytes that may wait when a pong is added: a client may request many and read none."""
 
 
@@ -149,7 +149,7 @@ class Outgoing:
     def write(self, data: bytes) -> None:
         """Write a control frame, after the frame that is being sent."""
         waiting = self._after_bytes + self._transport.get_write_buffer_size()
-        if waiting > MOST_CONTROL_BYTES:
+        if waiting > MAX_CONTROL_BYTES:
             self.on_abort()
             self.abort()
         elif not self._rest:

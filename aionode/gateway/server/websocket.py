@@ -44,13 +44,13 @@ PING_SEC: Final = 20.0
 ANSWERED: Final = "aionode.answered"
 """The type of an ASGI message for the answer to a ping, which the application does not see."""
 
-MOST_ASKED: Final = 16
+MAX_ASKED: Final = 16
 """Maximum number of pings that wait for their answers."""
 
 PINGS_PER_SEC: Final = 200.0
 """Pings and pongs per second that the gateway reads from a client: it has to answer each ping."""
 
-MOST_PARTS: Final = 10_000
+MAX_PARTS: Final = 10_000
 """Number of parts that a WebSocket message may have; clients send large ones in parts of 16 kB."""
 
 ENDED_SEC: Final = 0.02
@@ -84,7 +84,7 @@ class WebSocketConnection(Connection):
         self._parts: list[bytes] = []
         self._is_text = False
         # By the payloads of pings.
-        self._asked: Recent[bytes, Callable[[], None] | None] = Recent(MOST_ASKED)
+        self._asked: Recent[bytes, Callable[[], None] | None] = Recent(MAX_ASKED)
         self._awaits_pong = False
         self._timer: asyncio.TimerHandle | None = None
         rate_hz = limits.frames_per_sec
@@ -285,8 +285,8 @@ class WebSocketConnection(Connection):
             self._count(self._conts)
         else:
             self._is_text = frame.opcode is Opcode.TEXT
-        if len(self._parts) >= MOST_PARTS:
-            self._note_end(f"a message has more than {MOST_PARTS} parts")
+        if len(self._parts) >= MAX_PARTS:
+            self._note_end(f"a message has more than {MAX_PARTS} parts")
             self.abort()
             return
         self._parts.append(bytes(frame.data))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["asset_of_uri", "read_asset"]
 
-MOST_BYTES: Final = 16 << 20
+MAX_BYTES: Final = 16 << 20
 """Maximum size of a file whose rule has no ``max_bytes``, in bytes."""
 
 PACKAGE: Final = re.compile(r"[A-Za-z0-9_-]{1,200}")
@@ -64,7 +64,7 @@ async def read_asset(session: Session, name: str) -> bytes:
     rights = session.rights
     with rights.one_call("asset", name):
         rule = (await rights.allow("asset", name, "", None)).rule
-        most = MOST_BYTES if rule is None or rule.max_bytes is None else rule.max_bytes
+        most = MAX_BYTES if rule is None or rule.max_bytes is None else rule.max_bytes
         try:
             return await run_in_thread(partial(content_of, package, parts, most))
         except (PackageNotFoundError, OSError) as error:

@@ -25,19 +25,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Audit"]
 
-MOST_WAITING: Final = 1000
+MAX_WAITING: Final = 1000
 """Number of lines that may wait for the disk; further ones are only counted."""
 
-MOST_TEXT: Final = 500
+MAX_TEXT: Final = 500
 """The longest text of the arguments in a line, in characters."""
 
 REFUSALS_PER_SEC: Final = 20
 """Refusals of one client per second that are written: futile requests must not fill the disk."""
 
-MOST_REFUSALS: Final = 200
+MAX_REFUSALS: Final = 200
 """Refusals of all clients per second that are written."""
 
-MOST_LEVELS: Final = 20
+MAX_LEVELS: Final = 20
 """How many levels of nested arguments are written."""
 
 
@@ -100,8 +100,8 @@ class Audit:
             "who": identity.name,
             "address": identity.address,
             "action": action,
-            "name": name[:MOST_TEXT],
-            "result": result[:MOST_TEXT],
+            "name": name[:MAX_TEXT],
+            "result": result[:MAX_TEXT],
         }
         if arguments is not None:
             line["arguments"] = shortened(arguments)
@@ -117,14 +117,14 @@ class Audit:
             self._refusals.clear()
         self._refused += 1
         self._refusals[identity] += 1
-        return self._refused > MOST_REFUSALS or self._refusals[identity] > REFUSALS_PER_SEC
+        return self._refused > MAX_REFUSALS or self._refusals[identity] > REFUSALS_PER_SEC
 
     def _put(self, line: str) -> None:
         if not self._publisher.destroyed:
             self._publisher.publish(String(data=line))
         if self._path is None:
             return
-        if len(self._lines) >= MOST_WAITING:
+        if len(self._lines) >= MAX_WAITING:
             self.lost += 1
             return
         self._lines.append(line)
@@ -184,14 +184,14 @@ def shortened(arguments: Any) -> str:
     text = ""
     for part in parts_of(arguments):
         text += part
-        if len(text) > MOST_TEXT:
+        if len(text) > MAX_TEXT:
             break
-    return text[:MOST_TEXT]
+    return text[:MAX_TEXT]
 
 
 def parts_of(value: Any, level: int = 0) -> Iterator[str]:
     """Yield the text of a value piece by piece; pieces that nobody wants are not made."""
-    if level > MOST_LEVELS:
+    if level > MAX_LEVELS:
         yield "..."
     elif isinstance(value, Message):
         members = ((f"{field.name}=", getattr(value, field.name)) for field in fields(type(value)))
@@ -202,9 +202,9 @@ def parts_of(value: Any, level: int = 0) -> Iterator[str]:
     elif isinstance(value, list | tuple):
         yield from joined("[", (("", part) for part in value), "]", level)
     elif hasattr(value, "tolist") and hasattr(value, "__len__"):  # an array of numbers
-        yield from parts_of(value[:MOST_TEXT].tolist(), level)
+        yield from parts_of(value[:MAX_TEXT].tolist(), level)
     elif isinstance(value, str | bytes | bytearray | memoryview):
-        piece = value[:MOST_TEXT]
+        piece = value[:MAX_TEXT]
         yield repr(bytes(piece) if isinstance(piece, memoryview) else piece)
     else:
         yield shown(value)

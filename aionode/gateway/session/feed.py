@@ -38,10 +38,10 @@ DEPTH: Final = 100
 UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 """The QoS while there is no publisher, compatible with anything that the first one may offer."""
 
-MOST_LATCHED: Final = 100
+MAX_LATCHED: Final = 100
 """Number of messages of each transient local publisher to keep for late clients."""
 
-MOST_LATCHED_BYTES: Final = 32 << 20
+MAX_LATCHED_BYTES: Final = 32 << 20
 """Most bytes of these messages, though the last one is always kept."""
 
 BESIDE_BYTES: Final = 1 << 20
@@ -228,10 +228,10 @@ class Feed:
         gid = info["publisher_gid"]
         offered = self._offered.get(gid)
         if offered is not None and offered.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            depth = min(max(offered.depth, 1), MOST_LATCHED)
+            depth = min(max(offered.depth, 1), MAX_LATCHED)
             kept = self._latched.setdefault(gid, deque(maxlen=depth))
             kept.append(received)
-            while len(kept) > 1 and sum(len(older.raw) for older in kept) > MOST_LATCHED_BYTES:
+            while len(kept) > 1 and sum(len(older.raw) for older in kept) > MAX_LATCHED_BYTES:
                 kept.popleft()
         for taker in tuple(self._takers.values()):
             taker(received)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GoalOwners"]
 
-MOST_GOALS: Final = 10_000
+MAX_GOALS: Final = 10_000
 """Number of goals whose owners are remembered; the newest ones."""
 
 WARN_SEC: Final = 1.0
@@ -44,7 +44,7 @@ class GoalOwners:
     def __init__(self, node: Node, audit: Audit) -> None:
         self._node = node
         self._audit = audit
-        self._owned: Recent[str, Owned] = Recent(MOST_GOALS)  # by the id of the goal
+        self._owned: Recent[str, Owned] = Recent(MAX_GOALS)  # by the id of the goal
 
     def create_action_client(self, action_type: Any, action: str) -> Any:
         """Return a client of an action that sends goals for others."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GraphView", "Kind", "NodeDetails"]
 
-MOST_QUESTIONS: Final = 256
+MAX_QUESTIONS: Final = 256
 """Number of graph queries that may wait, for each client."""
 
 Kind: TypeAlias = Literal["topic", "service", "action"]
@@ -68,7 +68,7 @@ class GraphView:
         Raises:
             RefusedError: too many queries of the client are waiting.
         """
-        with self._rights.one_more("ask", "the graph", "questions", (), MOST_QUESTIONS):
+        with self._rights.one_more("ask", "the graph", "questions", (), MAX_QUESTIONS):
             async with self._turn, self._robot.turn:
                 await checkpoint()
 

@@ -12,10 +12,10 @@ from aionode.errors import MessageError
 
 __all__ = ["Lanes", "weight_of"]
 
-MOST_WAITING: Final = 100
+MAX_WAITING: Final = 100
 """Number of ops in one lane that may wait."""
 
-MOST_WEIGHT: Final = 8 << 20
+MAX_WEIGHT: Final = 8 << 20
 """Bytes that the waiting and running ops of a client may take; a single one may take more."""
 
 PART_BYTES: Final = 64
@@ -24,7 +24,7 @@ PART_BYTES: Final = 64
 PATIENCE_SEC: Final = 1.0
 """How long a frame waits for room; meanwhile its client is not read."""
 
-MOST_TASKS: Final = 1000
+MAX_TASKS: Final = 1000
 """Number of calls, goals and lanes of one client that may run; the policy also limits the first
 two."""
 
@@ -54,7 +54,7 @@ class Lanes:
         weight = weight_of(frame)
         try:
             async with asyncio.timeout(PATIENCE_SEC):
-                while self._weight and self._weight + weight > MOST_WEIGHT:
+                while self._weight and self._weight + weight > MAX_WEIGHT:
                     self._has_room.clear()
                     await self._has_room.wait()
         except TimeoutError:
@@ -81,18 +81,18 @@ class Lanes:
             MessageError: too much work waits in the lane, or there are too many lanes.
         """
         waiting = self._lanes.get(lane)
-        if waiting is not None and len(waiting) >= MOST_WAITING:
+        if waiting is not None and len(waiting) >= MAX_WAITING:
             await checkpoint()  # perhaps a single burst that no task has had a chance to work off
             waiting = self._lanes.get(lane)
         if waiting is None:
-            if len(self._running) >= MOST_TASKS:
+            if len(self._running) >= MAX_TASKS:
                 await checkpoint()  # those of a burst may have nothing to wait for
             self._begin(lambda: self._run(lane))
             self._lanes[lane] = deque([(work, self._taken_weight())])
-        elif len(waiting) < MOST_WAITING:
+        elif len(waiting) < MAX_WAITING:
             waiting.append((work, self._taken_weight()))
         else:
-            raise MessageError("client", f"{MOST_WAITING} ops wait for an earlier one; send fewer")
+            raise MessageError("client", f"{MAX_WAITING} ops wait for an earlier one; send fewer")
 
     def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
         """Run `work` concurrently with everything else; return its task.
@@ -106,8 +106,8 @@ class Lanes:
         return task
 
     def _begin(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
-        if len(self._running) >= MOST_TASKS:
-            raise MessageError("client", f"{MOST_TASKS} ops are in progress; wait for them to end")
+        if len(self._running) >= MAX_TASKS:
+            raise MessageError("client", f"{MAX_TASKS} ops are in progress; wait for them to end")
 
         async def run() -> None:
             await work()

@@ -29,7 +29,7 @@ SERVER_SEC: Final = 1.0
 ANSWER_SEC: Final = 5.0
 """How long requests about parameters wait for an answer, in seconds."""
 
-MOST_ASKED: Final = 8
+MAX_ASKED: Final = 8
 """Number of nodes that are asked for their parameters at the same time."""
 
 
@@ -98,7 +98,7 @@ class NodeParameters:
     async def all_names(self) -> dict[str, list[str]]:
         """Return the names of the parameters that the client may see, by the nodes that answer."""
         names_of: dict[str, list[str]] = {}
-        room = asyncio.Semaphore(MOST_ASKED)
+        room = asyncio.Semaphore(MAX_ASKED)
 
         async def ask(node: str) -> None:
             # a node without parameter services, or one that is ending

@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 __all__ = ["Refusal", "Refusals"]
 
-MOST_LINES: Final = 10
+MAX_LINES: Final = 10
 """Lines about clients of one name within `WAIT_NS`: others have lines of their own."""
 
-MOST_PLACES: Final = 100
+MAX_PLACES: Final = 100
 """Places whose clients without a name have lines of their own; those of further ones share some."""
 
 NOBODY: Final = ("", "")
 """The client name for log lines about all clients that have neither a name nor a place of their
 own."""
 
-MOST_SUBJECTS: Final = 1_000
+MAX_SUBJECTS: Final = 1_000
 """Number of subjects remembered for each client, since clients may invent any."""
 
-MOST_TEXT: Final = 500
+MAX_TEXT: Final = 500
 """The longest subject or reason in a line, in characters."""
 
 
@@ -88,7 +88,7 @@ class Window:
 
     def has_room(self) -> bool:
         """Count one more line; return whether it may be written."""
-        if self.lines >= MOST_LINES:
+        if self.lines >= MAX_LINES:
             self.left_out += 1
             return False
         self.lines += 1
@@ -114,7 +114,7 @@ class Refusals:
         self._node = node
         self._now_ns = node.context.time_base.steady_ns
         self._lines: RatedLines[tuple[tuple[str, str], str, Refusal, str]] = RatedLines(
-            self._now_ns, MOST_SUBJECTS
+            self._now_ns, MAX_SUBJECTS
         )
         self._windows: dict[tuple[str, str], Window] = {}
 
@@ -132,7 +132,7 @@ class Refusals:
             count: How many there were.
         """
         self.counts[kind] += count
-        now_ns, subject = self._now_ns(), subject[:MOST_TEXT]
+        now_ns, subject = self._now_ns(), subject[:MAX_TEXT]
         client = (identity.name, "" if identity.name else identity.place)
         window = self._window(client, now_ns)
         key = (client, way, kind, subject)
@@ -140,7 +140,7 @@ class Refusals:
         if more is None:
             return
         where = f"{identity.address or 'this process'}, {way}"
-        text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
+        text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MAX_TEXT]}"
         # On one line, so that a client's name cannot look like another line of the log.
         self._node.get_logger().warning(f"gateway: {escaped(' '.join(text.split()))}{more}")
 
@@ -151,7 +151,7 @@ class Refusals:
             return window
         for each in [key for key, old in self._windows.items() if now_ns >= old.until_ns]:
             self._tell_left_out(each, self._windows.pop(each).left_out)
-        if client[1] and sum(1 for _, other in self._windows if other) >= MOST_PLACES:
+        if client[1] and sum(1 for _, other in self._windows if other) >= MAX_PLACES:
             client = NOBODY
         return self._windows.setdefault(client, Window(now_ns + WAIT_NS))
 
@@ -162,5 +162,5 @@ class Refusals:
             who = name or (f"unknown client ({place})" if place else "unknown clients")
             self._node.get_logger().warning(
                 f"gateway: {escaped(who)}: {count} more lines in {WAIT_NS // S_TO_NS} s were "
-                f"omitted: the limit is {MOST_LINES} about one client"
+                f"omitted: the limit is {MAX_LINES} about one client"
             )

@@ -33,8 +33,8 @@ Ask = Callable[["Identity", "Verb", str, Any], Awaitable[bool]]
 the message. Returns whether the person approves."""
 
 BASES: Final = {"msg": Message, "srv": ServiceType, "action": ActionType}
-MOST_TYPES: Final = 1000
-MOST_RATES: Final = 10_000
+MAX_TYPES: Final = 1000
+MAX_RATES: Final = 10_000
 
 LONGEST_TYPE: Final = 255
 """The longest name of a type, in characters: for an unknown name, similar ones are searched."""
@@ -126,7 +126,7 @@ class Robot:
         key = (full, hashes)
         if key not in self._types:
             message_type = await self.node.find_type(full)
-            if len(self._types) >= MOST_TYPES:
+            if len(self._types) >= MAX_TYPES:
                 self._types.clear()
             self._types.setdefault(key, message_type)
         return self._types[key]
@@ -147,7 +147,7 @@ class Rates:
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
         # Keeping the rule alive ensures that no other rule gets the same id.
-        self._buckets: Recent[tuple[str, int, str], tuple[Rule, Bucket]] = Recent(MOST_RATES)
+        self._buckets: Recent[tuple[str, int, str], tuple[Rule, Bucket]] = Recent(MAX_RATES)
 
     def allows(self, identity: Identity, rule: Rule, name: str) -> bool:
         """Count one more, and return whether it is within the rate."""

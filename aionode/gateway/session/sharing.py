@@ -15,7 +15,7 @@ __all__ = ["Shared"]
 LINGER_NS: Final = 10 * S_TO_NS
 """How long an endpoint stays without a user: a page that is reloaded finds it again."""
 
-MOST_UNUSED: Final = 100
+MAX_UNUSED: Final = 100
 """Number of endpoints that stay without a user: clients may use one name after another."""
 
 
@@ -69,7 +69,7 @@ class Shared:
         if not self._users[key]:
             due_ns = self._time_base.steady_ns() + self._linger_ns
             self._alarms[key] = self._time_base.call_at(due_ns, lambda: self._destroy(key))
-            if len(self._alarms) > MOST_UNUSED:
+            if len(self._alarms) > MAX_UNUSED:
                 self._destroy(next(iter(self._alarms)))
 
     def _destroy(self, key: Hashable) -> None:

@@ -58,7 +58,7 @@ PROCESS_NOISE: Final = (
 """How fast the variances grow without measurements, per second."""
 
 START_VARIANCE: Final = 1e-9
-LEAST_VARIANCE: Final = 1e-9
+MIN_VARIANCE: Final = 1e-9
 """The minimum variance of a measurement: none is exact, and the gain needs an inverse matrix."""
 
 Mask = npt.NDArray[np.bool_]
@@ -139,7 +139,7 @@ class Measurement:
         """Return which values are measured, and their covariance, whose diagonal is above 0."""
         indices = np.flatnonzero(self.mask & np.isfinite(self.values))
         noise = self.covariance[np.ix_(indices, indices)].copy()
-        np.fill_diagonal(noise, np.maximum(np.abs(noise.diagonal()), LEAST_VARIANCE))
+        np.fill_diagonal(noise, np.maximum(np.abs(noise.diagonal()), MIN_VARIANCE))
         return indices, noise
 
 

@@ -8,7 +8,7 @@ from statistics import fmean
 
 __all__ = ["Odometry"]
 
-LEAST_SEC = 1e-6
+MIN_SEC = 1e-6
 """The shortest time over which a speed is computed, in seconds."""
 
 
@@ -43,7 +43,7 @@ class Odometry:
 
     def turn_to(self, left: float, right: float, period_sec: float) -> bool:
         """Move as the wheels turned to these positions; return whether it did."""
-        if period_sec < LEAST_SEC:
+        if period_sec < MIN_SEC:
             return False
         if not (math.isfinite(left) and math.isfinite(right)):  # not measured yet
             return False
@@ -55,7 +55,7 @@ class Odometry:
 
     def turn_at(self, left: float, right: float, period_sec: float) -> bool:
         """Move as the wheels turn at these speeds; return whether it did."""
-        if period_sec < LEAST_SEC or not (math.isfinite(left) and math.isfinite(right)):
+        if period_sec < MIN_SEC or not (math.isfinite(left) and math.isfinite(right)):
             return False
         left, right = left * self.radii[0], right * self.radii[1]
         linear, angular = (left + right) / 2, (right - left) / self.separation
@@ -68,7 +68,7 @@ class Odometry:
         """Move at a speed."""
         self.linear, self.angular = linear, angular
         way, turn = linear * period_sec, angular * period_sec
-        if abs(turn) < LEAST_SEC:
+        if abs(turn) < MIN_SEC:
             direction = self.heading + turn / 2
             self.x += way * math.cos(direction)
             self.y += way * math.sin(direction)

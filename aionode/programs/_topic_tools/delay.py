@@ -10,9 +10,9 @@ from aionode import Clock, ClockType, Timer
 from aionode.arguments import remove_ros_args
 from aionode.programs._topic_tools.any_type import AnyTypeNode, given_number
 
-__all__ = ["MOST_BYTES", "Delay", "main"]
+__all__ = ["MAX_BYTES", "Delay", "main"]
 
-MOST_BYTES = 512_000_000
+MAX_BYTES = 512_000_000
 """Maximum bytes of waiting messages; beyond that, the oldest are dropped."""
 
 
@@ -41,9 +41,9 @@ class Delay(AnyTypeNode):
         """Keep a message until it is due."""
         self.waiting.append((self.clock.now().nanoseconds + self.delay_ns, bytes(data)))
         self.bytes += len(data)
-        while self.bytes > MOST_BYTES:
+        while self.bytes > MAX_BYTES:
             self.bytes -= len(self.waiting.popleft()[1])
-            self.warn_once(f"more than {MOST_BYTES} bytes wait; the oldest messages are dropped")
+            self.warn_once(f"more than {MAX_BYTES} bytes wait; the oldest messages are dropped")
         if self.timer is None:
             self.send_due()
 

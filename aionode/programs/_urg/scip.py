@@ -17,14 +17,14 @@ from aionode.errors import escaped
 __all__ = ["ANSWER_SEC", "Limits", "Link", "Reply", "Scip", "Socket", "echoes_in", "time_of"]
 
 END: Final = b"\n\n"
-MOST_BYTES: Final = 200_000
+MAX_BYTES: Final = 200_000
 """The most bytes of a reply; a scan of 5000 steps with three echoes has fewer."""
 
-MOST_LINES: Final = MOST_BYTES // 65
+MAX_LINES: Final = MAX_BYTES // 65
 """The most lines of a reply: scans have 64 characters and a checksum in each."""
 
-MOST_STEPS: Final = 5000
-MOST_ECHOES: Final = 3
+MAX_STEPS: Final = 5000
+MAX_ECHOES: Final = 3
 CHUNK: Final = 65536
 ANSWER_SEC: Final = 1.0
 CONNECT_SEC: Final = 2.0
@@ -152,7 +152,7 @@ class Limits(NamedTuple):
         """Whether a lidar can have these limits."""
         return (
             0 <= self.dmin < self.dmax < 10**6
-            and 0 <= self.amin <= self.afrt <= self.amax < MOST_STEPS
+            and 0 <= self.amin <= self.afrt <= self.amax < MAX_STEPS
             and self.amin < self.amax < self.ares < 10**5
             and 0 < self.scan < 10**5
         )
@@ -239,11 +239,11 @@ class Scip:
         done = 0
         while (end := self.buffer.find(END, max(done - 1, 0))) < 0:
             done = len(self.buffer)
-            if done > MOST_BYTES:
+            if done > MAX_BYTES:
                 raise OSError("invalid response: it does not end; is this a lidar with SCIP 2.0?")
             self.buffer += await self.link.read()
         # Lines beyond the limit stay joined to the last one, whose checksum is wrong then.
-        lines = bytes(self.buffer[:end]).strip(b"\n").split(b"\n", MOST_LINES)
+        lines = bytes(self.buffer[:end]).strip(b"\n").split(b"\n", MAX_LINES)
         del self.buffer[: end + len(END)]
         echo, status, *rest = [*lines, b""] if len(lines) < 2 else lines
         return Reply(latin(echo), latin(status[:2]), [line for line in rest if line])
@@ -364,8 +364,8 @@ def echoes_in(data: bytes, steps: int, *, has_intensities: bool) -> npt.NDArray[
         raise OSError(errno.EBADMSG, "receive error: a scan is incomplete")
     step = np.cumsum(~is_echo[:values]) - 1
     echo = np.arange(values) - np.flatnonzero(~is_echo[:values])[step]
-    if step[-1] >= steps or echo.max() >= MOST_ECHOES:
+    if step[-1] >= steps or echo.max() >= MAX_ECHOES:
         raise OSError(errno.EBADMSG, "receive error: a scan has more points than asked for")
-    found = np.zeros((parts, step[-1] + 1, MOST_ECHOES), np.int64)
+    found = np.zeros((parts, step[-1] + 1, MAX_ECHOES), np.int64)
     found[:, step, echo] = numbers(characters, 3).reshape(values, parts).T
     return found

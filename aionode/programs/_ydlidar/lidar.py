@@ -24,7 +24,7 @@ TYPES: Final = (TOF, TRIANGLE, SCL)
 
 ASK: Final = 0xA5
 ANSWER: Final = b"\xa5\x5a"
-MOST_BYTES: Final = 4096
+MAX_BYTES: Final = 4096
 """How many bytes are kept while an answer is awaited."""
 
 FORCE_STOP, STOP, SCAN = 0x00, 0x65, 0x60
@@ -147,7 +147,7 @@ class Lidar:
         self.send(command)
         async with asyncio.timeout(timeout_sec):
             while True:
-                data = (data + await self.port.read())[-MOST_BYTES:]
+                data = (data + await self.port.read())[-MAX_BYTES:]
                 found = head.search(data)
                 if found and (kind == IS_SCAN or len(data) >= found.end() + size):
                     if self.shows_bytes:

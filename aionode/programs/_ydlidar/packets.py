@@ -12,7 +12,7 @@ __all__ = ["Kind", "Packet", "Packets", "Points"]
 
 HEADER: Final = b"\xaa\x55"
 HEADER_SIZE: Final = 10
-MOST_POINTS: Final = 80
+MAX_POINTS: Final = 80
 """The most points of a packet; a larger number is not the start of one."""
 
 ERRORS: Final = 2
@@ -131,7 +131,7 @@ class Packets:
         """Return the size of the packet that starts there; 0 if none does."""
         head = self.buffer[start : start + HEADER_SIZE]
         count, has_angles = head[3], head[4] & head[6] & 1
-        if not has_angles or not 0 < count <= MOST_POINTS:
+        if not has_angles or not 0 < count <= MAX_POINTS:
             return 0
         return HEADER_SIZE + count * SAMPLES[self.bits].itemsize
 

@@ -33,7 +33,7 @@ SILENCE_SEC: Final = 2.0
 CHECK_SEC: Final = 2.5
 """The time for the first revolution, which is `abnormal_check_count` times as long."""
 
-MOST_POINTS: Final = 5000
+MAX_POINTS: Final = 5000
 """The most points of a revolution; longer ones are dropped."""
 
 NETWORK: Final = {1: "TCP", 2: "UDP"}
@@ -212,7 +212,7 @@ class YdlidarDriver(Node):
             self.parts.clear()
             self.began_ns = now_ns
             self.size = 0
-        if self.size < MOST_POINTS:
+        if self.size < MAX_POINTS:
             self.parts.append(points)
             self.size += len(points.ranges)
 
@@ -238,7 +238,7 @@ class YdlidarDriver(Node):
         rates = lidar.rates
         near = (low for low, high in pairwise(rates) if measured <= low + (high - low) / 5)
         rate = next(near, rates[-1])
-        return min(max(int((rate + 0.3) * 1e3 / lidar.frequency), 10), MOST_POINTS)
+        return min(max(int((rate + 0.3) * 1e3 / lidar.frequency), 10), MAX_POINTS)
 
     def on_stop_scan(self, _: Any, response: Any) -> Any:
         """Stop the lidar until `start_scan` is called."""

@@ -22,12 +22,12 @@ __all__ = ["BlackboardView", "BlackboardWatcher", "Exchange", "SubBlackboard"]
 PLAIN: Final = (bool, int, float, str, bytes, list, tuple, dict, set, frozenset, type(None))
 """The types of values whose attributes are not listed."""
 DEEPEST: Final = 8
-MOST_NAMES: Final = 10_000
+MAX_NAMES: Final = 10_000
 """Maximum number of names listed: attributes of objects may form cycles."""
 INDENT: Final = " " * 4
 LISTENER_SEC: Final = 5.0
 """How long a stream waits for its first listener."""
-MOST_STREAMS: Final = 100
+MAX_STREAMS: Final = 100
 """Maximum number of open streams; the oldest is closed for a new one."""
 CANNOT_COMPARE: Final = (TypeError, AttributeError, pickle.PicklingError, RecursionError)
 
@@ -263,7 +263,7 @@ class Exchange:
             self.node, f"~/blackboard_streams/_watcher_{Exchange._counter}"
         )
         Exchange._counter += 1
-        if len(self.views) == MOST_STREAMS:
+        if len(self.views) == MAX_STREAMS:
             self._close_view(self.views[0])
         if request.with_activity_stream:
             self.register_activity_stream_client()
@@ -281,7 +281,7 @@ class Exchange:
 
 def add_names(names: list[str], name: str, value: Any, levels: int) -> None:
     """Add the name of a value, and those of its public attributes, down to some depth."""
-    if len(names) >= MOST_NAMES:
+    if len(names) >= MAX_NAMES:
         return
     names.append(name)
     if levels == 0 or isinstance(value, PLAIN) or hasattr(value, "__array__"):

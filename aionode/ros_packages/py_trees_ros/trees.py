@@ -425,7 +425,7 @@ class BehaviourTree(py_trees.trees.BehaviourTree):
         topic = SnapshotStream.expand_topic_name(self.node, request.topic_name)
         if topic in self.snapshot_streams:
             self._close(self.snapshot_streams[topic])
-        if len(self.snapshot_streams) == blackboard.MOST_STREAMS:
+        if len(self.snapshot_streams) == blackboard.MAX_STREAMS:
             default = self.default_snapshot_stream_topic_name
             self._close(next(s for name, s in self.snapshot_streams.items() if name != default))
         response.topic_name = self._open(topic, settings).topic_name

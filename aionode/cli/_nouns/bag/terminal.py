@@ -20,7 +20,7 @@ UP: Final = "\x1b[A"
 DOWN: Final = "\x1b[B"
 RIGHT: Final = "\x1b[C"
 CLEAR_LINE: Final = "\r\x1b[K"
-MOST_BYTES: Final = 64
+MAX_BYTES: Final = 64
 """Maximum bytes to read at once; a key has at most three."""
 
 
@@ -39,7 +39,7 @@ def keys_pressed(actions: Mapping[str, Callable[[], object]], *, wanted: bool) -
     fd = sys.stdin.fileno()
 
     def read() -> None:
-        typed = os.read(fd, MOST_BYTES).decode(errors="replace")
+        typed = os.read(fd, MAX_BYTES).decode(errors="replace")
         while typed:
             key = next((action for action in actions if typed.startswith(action)), typed[0])
             typed = typed[len(key) :]

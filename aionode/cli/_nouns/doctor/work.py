@@ -39,10 +39,10 @@ LOOKING_S = 1.2
 theirs once a second, and counts from the start of a process say nothing about the present.
 """
 
-MOST_STATUSES: Final = 20
+MAX_STATUSES: Final = 20
 """Maximum number of statuses that are reported."""
 
-MOST_KNOWN: Final = 10_000
+MAX_KNOWN: Final = 10_000
 """Maximum number of statuses that are kept."""
 
 LEVELS: Final = {
@@ -159,7 +159,7 @@ async def statuses_of(node: Node) -> list[DiagnosticStatus]:
 
     def note(message: DiagnosticArray) -> None:
         for status in message.status:
-            if status.name in newest or len(newest) < MOST_KNOWN:
+            if status.name in newest or len(newest) < MAX_KNOWN:
                 newest[status.name] = status
 
     subscription = None
@@ -184,5 +184,5 @@ def status_findings(statuses: Sequence[DiagnosticStatus]) -> list[Finding]:
             escaped(f"{LEVELS[status.level]}: {status.message}", one_line=True),
             "see its values: aionode topic echo --once /diagnostics",
         )
-        for status in bad[:MOST_STATUSES]
+        for status in bad[:MAX_STATUSES]
     ]

@@ -39,10 +39,10 @@ __all__ = ["TopApp"]
 KEPT: Final = 120
 """Number of snapshots that the plot of a row shows."""
 
-MOST_ROWS: Final = 500
+MAX_ROWS: Final = 500
 """Maximum number of rows of a table."""
 
-MOST_STATUSES: Final = 10_000
+MAX_STATUSES: Final = 10_000
 """Maximum number of statuses of /diagnostics that are kept."""
 
 SHOWN: Final = (*TABLES, "diagnostics")
@@ -156,7 +156,7 @@ class TopApp(App[None]):
             for key, row in table.in_order(column, reverse=reverse)
             if wanted in " ".join(map(str, row)).lower()
         ]
-        for key, row in rows[:MOST_ROWS]:
+        for key, row in rows[:MAX_ROWS]:
             view.add_row(*(cell_of(value) for value in row), key=key)
         if chosen in view.rows:
             view.move_cursor(row=view.get_row_index(chosen), animate=False)
@@ -211,7 +211,7 @@ class TopApp(App[None]):
 
         def hear(message: DiagnosticArray) -> None:
             for status in message.status:
-                if status.name in self._statuses or len(self._statuses) < MOST_STATUSES:
+                if status.name in self._statuses or len(self._statuses) < MAX_STATUSES:
                     self._statuses[status.name] = status
 
         self._node.create_subscription(DiagnosticArray, "/diagnostics", hear, 100)

@@ -64,7 +64,7 @@ HZ_HEADER: Final[tuple[str, ...]] = ("topic", "rate", "min_delta", "max_delta", 
 
 BW_HEADER: Final[tuple[str, ...]] = ("topic", "bandwidth", "window", "mean", "min", "max")
 
-LEAST_FIRST = (5, 4, 3, 2)
+MIN_FIRST = (5, 4, 3, 2)
 """The columns that a narrow terminal omits, least important first."""
 
 SILENT = ("-",) * (len(HZ_HEADER) - 1)
@@ -389,7 +389,7 @@ def columns_for(header: tuple[str, ...], rows: list[tuple[str, ...]], width: int
     """Return which columns fit into `width`; topic and rate are always kept."""
     widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]
     kept = list(range(len(header)))
-    for column in LEAST_FIRST:
+    for column in MIN_FIRST:
         if sum(widths[i] + 3 for i in kept) - 3 < width:  # not the full width
             break
         kept.remove(column)

@@ -29,7 +29,7 @@ HASH_SIZE: Final = 16
 STOPS: Final = 0
 """The number of batches that contain only stops of leases."""
 
-MOST_LINKS: Final = 4_000
+MAX_LINKS: Final = 4_000
 """Number of links whose secrets are remembered; a batch follows soon after its link's end."""
 
 
@@ -76,7 +76,7 @@ class LinkSecrets:
     """The secrets of the other ends of all recent links."""
 
     def __init__(self) -> None:
-        self._by_name: Recent[bytes, LinkSecret] = Recent(MOST_LINKS)
+        self._by_name: Recent[bytes, LinkSecret] = Recent(MAX_LINKS)
 
     def add(self, participant: str, secret: bytes) -> None:
         """Remember the secret of a context at the other end of a new link."""

@@ -39,10 +39,10 @@ Shared vs. sent, by `benchmarks/ipc_shared_memory.py`: 210 µs vs. 210 at this s
 twice the size, which a socket does not accept at once, and 157 vs. 148 at half the size.
 """
 
-MAX_IDLE: Final = 1 << 26
+MAX_IDLE_BYTES: Final = 1 << 26
 """Maximum number of bytes to keep in idle buffers."""
 
-MOST_IDLE: Final = 8
+MAX_IDLE_BUFFERS: Final = 8
 """Maximum number of idle buffers; each takes two descriptors, and one in the other process."""
 
 STEPS: Final = 8
@@ -174,11 +174,11 @@ class BufferPool:
         buffer.users -= 1
         if buffer.users:
             return
-        if self._closed or buffer.retired or buffer.size > MAX_IDLE:
+        if self._closed or buffer.retired or buffer.size > MAX_IDLE_BYTES:
             self._close(buffer)
             return
         self._idle.append(buffer)
-        while len(self._idle) > MOST_IDLE or sum(map(SIZE_OF, self._idle)) > MAX_IDLE:
+        while len(self._idle) > MAX_IDLE_BUFFERS or sum(map(SIZE_OF, self._idle)) > MAX_IDLE_BYTES:
             self._close(self._idle.pop(0))
 
     def _close(self, buffer: SharedBuffer) -> None:

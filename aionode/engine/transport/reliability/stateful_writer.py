@@ -65,7 +65,7 @@ KNOWN_NS: Final = 1_000_000_000
 RETURN_NS: Final = 120_000_000_000
 """How long to keep messages for a reader that vanished after `SILENT_NS` of silence."""
 
-MOST_READERS: Final = 1_000
+MAX_READERS: Final = 1_000
 """A writer with more readers than this does not wait for any that vanishes: any process may
 announce and withdraw thousands, repeatedly."""
 
@@ -230,7 +230,7 @@ class StatefulWriter:
         now_ns = self._now_ns()
         # One that has never answered is not an aionode reader, and nothing is kept for it.
         asked = reader.answered and (self._keep_all or reader.acked < self.sent)
-        if len(self.readers) > MOST_READERS:
+        if len(self.readers) > MAX_READERS:
             del self.readers[gid]
         elif asked and now_ns - reader.heard_ns >= SILENT_NS:
             reader.away_until_ns = now_ns + RETURN_NS

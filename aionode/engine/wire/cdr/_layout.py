@@ -40,7 +40,7 @@ __all__ = [
     "uniform_alignment",
 ]
 
-MOST_LEAVES = 64
+MAX_LEAVES = 64
 """Maximum number of fields, including nested ones, of a message whose code is inlined."""
 
 DEEPEST = 16
@@ -120,7 +120,7 @@ def is_small(cls: Any) -> bool:
     Larger messages get a function of their own, which bounds the size of the generated code.
     """
     _, leaves, depth = totals(cls)
-    return leaves <= MOST_LEAVES and depth <= DEEPEST
+    return leaves <= MAX_LEAVES and depth <= DEEPEST
 
 
 def has_views(cls: Any) -> bool:

@@ -2,8 +2,8 @@
 
 import { frameOf, poseOf } from "./transforms.js";
 
-const MOST_POINTS = 20000;
-const MOST_CELLS = 16e6;
+const MAX_POINTS = 20000;
+const MAX_CELLS = 16e6;
 const NUMBERS = { 7: ["getFloat32", 4], 8: ["getFloat64", 8] }; // of sensor_msgs/PointField
 
 /**
@@ -37,7 +37,7 @@ export function layerOf(read, message) {
 
 function scan({ ranges, angle_min, angle_increment, range_min, range_max }) {
   const points = [];
-  for (let index = 0; index < ranges.length && index < MOST_POINTS; index++) {
+  for (let index = 0; index < ranges.length && index < MAX_POINTS; index++) {
     const range = ranges[index];
     if (!(range >= range_min && range <= range_max)) continue; // also without a number
     const angle = angle_min + index * angle_increment;
@@ -51,7 +51,7 @@ function cloud({ fields, data, width, height, point_step, row_step, is_bigendian
   if (places.some((field) => !NUMBERS[field?.datatype])) throw new Error("it has no x, y and z of float32 or float64");
   const bytes = typeof data === "string" ? Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0)) : data;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const every = Math.max(1, Math.ceil(width * height / MOST_POINTS));
+  const every = Math.max(1, Math.ceil(width * height / MAX_POINTS));
   const points = [];
   for (let index = 0; index < width * height; index += every) {
     const start = Math.floor(index / width) * row_step + (index % width) * point_step;
@@ -66,7 +66,7 @@ function cloud({ fields, data, width, height, point_step, row_step, is_bigendian
 
 function grid({ info, data }) {
   const { width, height, resolution } = info;
-  if (!(resolution > 0) || width * height > MOST_CELLS || width * height !== data.length || !data.length) {
+  if (!(resolution > 0) || width * height > MAX_CELLS || width * height !== data.length || !data.length) {
     throw new Error(`${width} × ${height} cells of ${resolution} m with ${data.length} values are not a map`);
   }
   const canvas = new OffscreenCanvas(width, height);
@@ -81,7 +81,7 @@ function grid({ info, data }) {
 }
 
 function path({ header, poses }) {
-  const line = poses.slice(0, MOST_POINTS).flatMap(({ pose: { position: { x, y, z } } }) => [x, y, z]);
+  const line = poses.slice(0, MAX_POINTS).flatMap(({ pose: { position: { x, y, z } } }) => [x, y, z]);
   // Some planners name the frame in the poses only.
   return { frame: frameOf(header.frame_id || poses[0]?.header.frame_id || ""), line: new Float32Array(line) };
 }

@@ -2,8 +2,8 @@
 // Each is a Float32Array with x, y, z of three corners after one another.
 
 const ROUND = 24; // faces around a cylinder
-const MOST_TRIANGLES = 1e6;
-const MOST_NODES = 10000; // of a COLLADA scene, each as often as it is used
+const MAX_TRIANGLES = 1e6;
+const MAX_NODES = 10000; // of a COLLADA scene, each as often as it is used
 
 export function box([length, width, height]) {
   const [x, y, z] = [length / 2, width / 2, height / 2];
@@ -47,7 +47,7 @@ function trianglesOf(faces) {
   const corners = [];
   for (const face of faces) {
     for (let at = 1; at + 1 < face.length; at++) corners.push(...face[0], ...face[at], ...face[at + 1]);
-    if (corners.length > 9 * MOST_TRIANGLES) throw new Error(`it has more than ${MOST_TRIANGLES} triangles`);
+    if (corners.length > 9 * MAX_TRIANGLES) throw new Error(`it has more than ${MAX_TRIANGLES} triangles`);
   }
   return new Float32Array(corners);
 }
@@ -65,7 +65,7 @@ function stl(buffer) {
   const view = new DataView(buffer);
   const count = buffer.byteLength >= 84 ? view.getUint32(80, true) : -1;
   if (buffer.byteLength !== 84 + 50 * count) return stlText(new TextDecoder().decode(buffer));
-  if (count > MOST_TRIANGLES) throw new Error(`it has more than ${MOST_TRIANGLES} triangles`);
+  if (count > MAX_TRIANGLES) throw new Error(`it has more than ${MAX_TRIANGLES} triangles`);
   const corners = new Float32Array(9 * count);
   for (let at = 0; at < count; at++) {
     for (let each = 0; each < 9; each++) corners[9 * at + each] = view.getFloat32(84 + 50 * at + 12 + 4 * each, true);
@@ -108,7 +108,7 @@ function collada(text) {
   let nodes = 0;
   const visit = (node, outer, deep) => {
     if (deep > 50) throw new Error("its nodes contain each other");
-    if (++nodes > MOST_NODES) throw new Error(`it has more than ${MOST_NODES} nodes`);
+    if (++nodes > MAX_NODES) throw new Error(`it has more than ${MAX_NODES} nodes`);
     let here = outer;
     for (const child of node.children) {
       const inner = TRANSFORMS[child.tagName]?.(numbersOf(child));
@@ -182,7 +182,7 @@ function facesOf(geometry, byId, m, unit, faces) {
         if (!(size > 0)) break;
         faces.push(indices.slice(at, at + size).map(corner));
         at += size;
-        if (faces.length > MOST_TRIANGLES) throw new Error(`it has more than ${MOST_TRIANGLES} triangles`);
+        if (faces.length > MAX_TRIANGLES) throw new Error(`it has more than ${MAX_TRIANGLES} triangles`);
       }
     }
   }

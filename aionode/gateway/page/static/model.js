@@ -4,7 +4,7 @@ import { box, cylinder, mesh, sphere } from "./meshes.js";
 import { composed, IDENTITY, ofAngles } from "./transforms.js";
 
 const GREY = [0.6, 0.6, 0.62, 1];
-const MOST_PARTS = 1000;
+const MAX_PARTS = 1000;
 
 function numbers(text, given) {
   const found = (text ?? "").trim().split(/\s+/).filter(Boolean).map(Number);
@@ -44,7 +44,7 @@ export function modelOf(urdf, fetchAsset) {
     }
     if (tag.tagName !== "link") continue;
     for (const visual of tag.children) {
-      if (visual.tagName !== "visual" || parts.length >= MOST_PARTS) continue;
+      if (visual.tagName !== "visual" || parts.length >= MAX_PARTS) continue;
       const shape = inner(visual, "geometry")?.firstElementChild;
       if (!shape) continue;
       const material = inner(visual, "material");

@@ -3,8 +3,8 @@
 import { element, fill, notice } from "./dom.js";
 
 const LEVELS = { 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL" };
-const MOST_LINES = 500;
-const MOST_LETTERS = 5000; // of a line
+const MAX_LINES = 500;
+const MAX_LETTERS = 5000; // of a line
 const LIST_MS = 5000;
 const AT_ONCE = 8; // parameters requested at a time
 
@@ -26,11 +26,11 @@ export function log(robot) {
     const row = element("tr", { className: `level-${message.level}` },
       element("td", { textContent: time.toLocaleTimeString() }),
       element("td", { textContent: LEVELS[message.level] ?? message.level }),
-      element("td", { textContent: `${message.name}: ${message.msg}`.slice(0, MOST_LETTERS) }));
+      element("td", { textContent: `${message.name}: ${message.msg}`.slice(0, MAX_LETTERS) }));
     row.dataset.level = message.level;
     row.hidden = isHidden(row);
     rows.append(row);
-    while (rows.children.length > MOST_LINES) rows.firstChild.remove();
+    while (rows.children.length > MAX_LINES) rows.firstChild.remove();
     if (isAtEnd) place.scrollTop = place.scrollHeight;
   });
 }

@@ -1,8 +1,8 @@
 // Draws numbers over time on a canvas.
 
 const COLOURS = ["#3b8eea", "#e8862e", "#2ea36b", "#d9485f", "#9a6be0", "#b0932b"];
-const MOST_POINTS = 6000;
-const MOST_GRID_LINES = 8; // of large numbers, a step may be too small to make a difference
+const MAX_POINTS = 6000;
+const MAX_GRID_LINES = 8; // of large numbers, a step may be too small to make a difference
 const MARGIN = { left: 52, right: 8, top: 8, bottom: 20 };
 
 /** Lines of numbers, the newest at the right edge. */
@@ -37,7 +37,7 @@ export class Plot {
     points.push([now, value]);
     const old = points.findIndex(([time]) => time > now - this.seconds - 1);
     if (old > 100) points.splice(0, old);
-    if (points.length > MOST_POINTS) points.splice(0, points.length - MOST_POINTS);
+    if (points.length > MAX_POINTS) points.splice(0, points.length - MAX_POINTS);
   }
 
   draw(now) {
@@ -91,7 +91,7 @@ export class Plot {
     const step = niceStep((high - low) / 5);
     context.textAlign = "right";
     let value = Math.ceil(low / step) * step;
-    for (let count = 0; count < MOST_GRID_LINES && value <= high; count++, value += step) {
+    for (let count = 0; count < MAX_GRID_LINES && value <= high; count++, value += step) {
       line(context, x(now - this.seconds), y(value), x(now), y(value));
       context.fillText(Number(value.toPrecision(6)).toString(), MARGIN.left - 6, y(value) + 4);
     }

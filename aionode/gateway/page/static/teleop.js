@@ -4,7 +4,7 @@ import { element, notice } from "./dom.js";
 
 const ID = "teleop";
 const PERIOD_MS = 50;
-const MOST_WAITING_BYTES = 2000;
+const MAX_WAITING_BYTES = 2000;
 const KEYS = {
   ArrowUp: [1, 0], KeyW: [1, 0], ArrowDown: [-1, 0], KeyS: [-1, 0],
   ArrowLeft: [0, 1], KeyA: [0, 1], ArrowRight: [0, -1], KeyD: [0, -1],
@@ -134,7 +134,7 @@ export class Teleop {
   // Output
 
   send() {
-    if (this.robot.waitingBytes > MOST_WAITING_BYTES) {
+    if (this.robot.waitingBytes > MAX_WAITING_BYTES) {
       this.release();
       notice("Teleop: the network is too slow for commands");
       return;

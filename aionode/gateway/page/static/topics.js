@@ -6,7 +6,7 @@ import { Plot } from "./plot.js";
 const LIST_MS = 3000;
 const RATE_MS = 1000;
 const WINDOW = 3; // seconds over which rates are averaged
-const MOST_ROWS = 200;
+const MAX_ROWS = 200;
 // Topics with large messages are measured only while their message is shown.
 const LARGE = /\/(Image|CompressedImage|PointCloud2?|LaserScan|OccupancyGrid|MarkerArray|DisparityImage)$/;
 
@@ -47,7 +47,7 @@ export class Topics extends EventTarget {
     const shown = [...this.types].filter(([name, type]) => `${name} ${type}`.toLowerCase().includes(wanted));
     const rows = new Map([...this.rows.children].map((row) => [row.dataset.topic, row]));
     this.rows.replaceChildren(...shown.map(([name, type]) => rows.get(name) ?? this.row(name, type)));
-    this.measure(new Set(shown.slice(0, MOST_ROWS).map(([name]) => name)));
+    this.measure(new Set(shown.slice(0, MAX_ROWS).map(([name]) => name)));
   }
 
   row(name, type) {
@@ -133,7 +133,7 @@ export class MessageView {
     let count = 0;
     const shown = new Set();
     for (const [path, value] of leaves(message)) {
-      if (++count > MOST_ROWS) break;
+      if (++count > MAX_ROWS) break;
       shown.add(path);
       const cell = this.cells.get(path) ?? this.row(path, value);
       cell.textContent = short(value);

@@ -2,7 +2,7 @@
 
 import { element } from "./dom.js";
 
-const MOST_FRAMES = 2000;
+const MAX_FRAMES = 2000;
 const DEEPEST = 100; // frames in a chain: a circle ends there
 const TREE_MS = 500;
 
@@ -102,7 +102,7 @@ export class Transforms extends EventTarget {
     for (const { header, child_frame_id, transform } of transforms) {
       const child = frameOf(child_frame_id), parent = frameOf(header.frame_id), pose = poseOf(transform);
       if (!pose || !child || !parent) continue;
-      if (!this.parents.has(child) && this.parents.size >= MOST_FRAMES) continue;
+      if (!this.parents.has(child) && this.parents.size >= MAX_FRAMES) continue;
       this.parents.set(child, { parent, pose, isStatic, heardMs: performance.now() });
     }
     this.dispatchEvent(new Event("change"));

@@ -49,7 +49,7 @@ def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
     return b"".join((head, data))
 
 
-MOST_ANSWERS: Final = 1000
+MAX_ANSWERS: Final = 1000
 """Number of answers that may wait: a client that reads none of them is disconnected."""
 
 
@@ -138,7 +138,7 @@ class Outbox:
             return
         self._answers.append(frame)
         self._answer_bytes += len(frame)
-        if len(self._answers) > MOST_ANSWERS or self._answer_bytes > self._most_bytes:
+        if len(self._answers) > MAX_ANSWERS or self._answer_bytes > self._most_bytes:
             self.overflowed = True
             self.on_overflow()
             self.close()

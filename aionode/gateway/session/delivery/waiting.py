@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Waiting"]
 
-MOST_BYTES: Final = 32 << 20
+MAX_BYTES: Final = 32 << 20
 """Bytes of one subscription's messages that may wait; beyond that, the oldest are dropped."""
 
 
@@ -35,7 +35,7 @@ class Waiting:
         self._bytes += len(received.raw)
         dropped = 0
         while len(self._messages) > self._depth or (
-            self._bytes > MOST_BYTES and len(self._messages) > 1
+            self._bytes > MAX_BYTES and len(self._messages) > 1
         ):
             self.take()
             dropped += 1

@@ -15,7 +15,7 @@ __all__ = ["check_items", "check_parts", "decoded", "is_large", "shown", "type_t
 VALUES_PER_PART: Final = 10
 """Allowed values per object or list: reading a million takes some 50 ms."""
 
-MOST_ITEMS: Final = 10_000
+MAX_ITEMS: Final = 10_000
 """Number of items that the value of a parameter may have."""
 
 LARGE_ITEMS: Final = 1_000
@@ -94,8 +94,8 @@ def check_items(value: object, what: str) -> None:
     Raises:
         MessageError: there are too many.
     """
-    if isinstance(value, list) and len(value) > MOST_ITEMS:
-        raise MessageError(what[:200], f"{len(value)} items, at most {MOST_ITEMS} are allowed")
+    if isinstance(value, list) and len(value) > MAX_ITEMS:
+        raise MessageError(what[:200], f"{len(value)} items, at most {MAX_ITEMS} are allowed")
 
 
 def is_large(values: object) -> bool:

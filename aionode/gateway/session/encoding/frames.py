@@ -138,13 +138,13 @@ class Fragmented(str):
         return fragments(self, self.size, self.message_id)
 
 
-MOST_FRAGMENTS: Final = 1000
+MAX_FRAGMENTS: Final = 1000
 """The most fragments of a frame, however small the client wants them."""
 
 
 def fragments(frame: str, size: int, message_id: str) -> Iterator[str]:
     """Split a frame into parts of `size` characters, if it is longer."""
-    size = max(size, -(-len(frame) // MOST_FRAGMENTS))
+    size = max(size, -(-len(frame) // MAX_FRAGMENTS))
     if len(frame) <= size:
         yield frame
         return

@@ -12,7 +12,7 @@ __all__ = ["parse_words"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
-MOST_LEVELS = 100
+MAX_LEVELS = 100
 """The deepest nesting of substitutions."""
 
 
@@ -60,8 +60,8 @@ class Reader:
         """Return the substitution that begins here."""
         begin = self.at
         self._depth += 1
-        if self._depth > MOST_LEVELS:
-            raise ValueError(f"substitutions are nested deeper than {MOST_LEVELS}")
+        if self._depth > MAX_LEVELS:
+            raise ValueError(f"substitutions are nested deeper than {MAX_LEVELS}")
         self.at += 2
         match = NAME.match(self.text, self.at)
         if match is None:

@@ -26,7 +26,7 @@ __all__ = ["IoThread"]
 T = TypeVar("T")
 ArgT = TypeVar("ArgT")
 
-MOST_WAITING = 1000
+MAX_WAITING = 1000
 """Number of messages that may wait for the thread before `publish` blocks."""
 
 SLICE = 100
@@ -176,7 +176,7 @@ class IoThread:
         Raises:
             Exception: raised by `work`.
         """
-        if len(self._work) >= MOST_WAITING:
+        if len(self._work) >= MAX_WAITING:
             self._pace()
         if uninterrupted.begin():
             try:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
 
-MOST_REQUESTS = 1000
+MAX_REQUESTS = 1000
 """Maximum number of requests that a service keeps until they are taken, whatever its QoS."""
 
 logger = logging.getLogger("aionode.rclpy")
@@ -130,7 +130,7 @@ class CallHandle(EndpointHandle[BareT]):
         super()._destroy()
 
 
-MOST_TAKEN = 10_000
+MAX_TAKEN = 10_000
 """Number of requests that may wait for a late answer; beyond that, the oldest gets none."""
 
 
@@ -142,13 +142,13 @@ class ServiceHandle(CallHandle[BareEndpoint]):
         limit_bytes = node.bare.context.network.queue_bytes
         text = heavy_text(self.name, limit_bytes, "refused (logged once)")
         self._requests = Requests(
-            self.profile.depth or MOST_REQUESTS,
+            self.profile.depth or MAX_REQUESTS,
             limit_bytes,
             node.requests,
             partial(logger.warning, text),
         )
         # Threads that spin add and pop requests, each in one atomic step.
-        self._taken: Recent[rmw_request_id_t, Request] = Recent(MOST_TAKEN)
+        self._taken: Recent[rmw_request_id_t, Request] = Recent(MAX_TAKEN)
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
     def ready(self) -> bool:
@@ -238,7 +238,7 @@ class ClientHandle(CallHandle[BareClient]):
         self._calls: dict[int, Any] = {}  # used by the thread of the loop, or its borrower
         self._sequence = 0  # changed under the lock of the client
         # Where causes are kept: the numbers by which others know the requests that are pending.
-        self._numbers: Recent[int, int] = Recent(MOST_REQUESTS)
+        self._numbers: Recent[int, int] = Recent(MAX_REQUESTS)
         self._announce(node.bare.create_client, self._support.wire_type)
 
     def ready(self) -> bool:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic
 from aionode._process.recent import Recent
 from aionode.engine.reports.limits import tell_full, tell_rejected
 from aionode.engine.rules.goal import (
-    MOST_REJECTIONS,
+    MAX_REJECTIONS,
     CancelResponse,
     GoalEvent,
     GoalResponse,
@@ -269,7 +269,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 max_goals=checked_max_goals(max_goals, f"action server {action_name}"),
             )
         self._ActionServer__action_name = action_name
-        self._ActionServer__rejections: Recent[bytes, str] = Recent(MOST_REJECTIONS)
+        self._ActionServer__rejections: Recent[bytes, str] = Recent(MAX_REJECTIONS)
         self._goal_handles: dict[bytes, AnyGoalHandle] = self._handle.goals
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)

@@ -95,7 +95,7 @@ def test_any_bytes_are_refused(data: bytes) -> None:
 
 def test_secrets_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The oldest one is discarded, because links may come and go for months."""
-    monkeypatch.setattr(continuation, "MOST_LINKS", 3)
+    monkeypatch.setattr(continuation, "MAX_LINKS", 3)
     links = LinkSecrets()
     for number in range(10):
         links.add("b2", bytes([number]) * 16)

@@ -154,7 +154,7 @@ def test_the_pool_keeps_few_and_says_which_it_closes(pool: BufferPool) -> None:
     """The least recently used one is closed, so that receivers can forget it."""
     closed: list[int] = []
     pool.listeners.add(closed.append)
-    some = [filled(pool, bytes(SIZE)) for _ in range(shared_memory.MOST_IDLE + 2)]
+    some = [filled(pool, bytes(SIZE)) for _ in range(shared_memory.MAX_IDLE_BUFFERS + 2)]
     before = descriptors()
 
     for one in some:
@@ -168,7 +168,7 @@ def test_the_pool_keeps_a_limited_number_of_bytes(
     pool: BufferPool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A buffer larger than the limit does not replace the others."""
-    monkeypatch.setattr(shared_memory, "MAX_IDLE", 3 * SIZE)
+    monkeypatch.setattr(shared_memory, "MAX_IDLE_BYTES", 3 * SIZE)
     closed: list[int] = []
     pool.listeners.add(closed.append)
     small, huge, other = (filled(pool, bytes(size)) for size in (SIZE, 4 * SIZE, 2 * SIZE))

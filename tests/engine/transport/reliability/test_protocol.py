@@ -15,7 +15,7 @@ from aionode.engine.transport.reliability.stateful_writer import (
     FLAPPING_NS,
     HEARTBEAT_NS,
     KNOWN_NS,
-    MOST_READERS,
+    MAX_READERS,
     MUTE_TICKS,
     RETURN_NS,
     UNANSWERED_EACH_TICK,
@@ -690,7 +690,7 @@ def test_a_reader_that_ends_beside_a_living_connection_is_forgotten_soon() -> No
 def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
     """A process can announce them, answer for each, and break its connection repeatedly."""
     wire = Wire(0, keep_all=True, depth=10)
-    for number in range(5 * MOST_READERS):
+    for number in range(5 * MAX_READERS):
         gid = number.to_bytes(16, "big")
         wire.writer.add(gid, gid.hex())
         wire.writer.acknack(Submessage(ACKNACK, WRITER, gid, 1, 0, b""))
@@ -698,7 +698,7 @@ def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
         wire.writer.remove(gid)
     wire.control.clear()
 
-    assert len(wire.writer.readers) == MOST_READERS
+    assert len(wire.writer.readers) == MAX_READERS
 
 
 @pytest.mark.parametrize("keep_all", [True, False])

@@ -62,7 +62,7 @@ async def test_thousands_of_peers_that_read_nothing_share_a_few_threads(
     peers: PeerSenders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Otherwise whoever announces them could exhaust this process's threads."""
-    monkeypatch.setattr(peer_senders, "MOST_THREADS", 3)
+    monkeypatch.setattr(peer_senders, "MAX_THREADS", 3)
     gate, sent = threading.Event(), Sent()
     for number in range(100):
         for job in (partial(waited, gate), sent):

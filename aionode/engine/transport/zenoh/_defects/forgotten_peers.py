@@ -65,7 +65,7 @@ __all__ = ["Recovery", "nodes_at_gossip_source"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-MOST_LOST: Final = 1_000
+MAX_LOST: Final = 1_000
 """Number of lost sessions whose processes are looked at: others may open and close any number."""
 
 FIRST_S: Final = 0.5
@@ -151,7 +151,7 @@ class Recovery(ConnectionMend):
         self._has_met_router |= change.kind == zenoh.WhatAmI.ROUTER
         if not change.is_made:
             self._until_s = now_s + WATCH_S
-            if len(self._lost) < MOST_LOST:
+            if len(self._lost) < MAX_LOST:
                 self._lost.add(change.zid)
         elif now_s >= self._until_s:
             return  # nothing was lost

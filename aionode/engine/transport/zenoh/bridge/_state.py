@@ -23,7 +23,7 @@ __all__ = ["BridgeDeclaration", "BridgeState"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-MOST_NAMESPACES: Final = 100
+MAX_NAMESPACES: Final = 100
 """Maximum number of bridge namespaces: each is compared with each name of this context."""
 
 
@@ -149,8 +149,8 @@ class BridgeState(SessionState):
 
     def add_bridge(self, zid: str, prefix: str) -> None:
         """Add a bridge, and declare what passes it. The state is connected."""
-        if prefix not in self._served and len(self._served) >= MOST_NAMESPACES:
-            self.drops.note(Drop.BRIDGES, "bridges to DDS", str(MOST_NAMESPACES))
+        if prefix not in self._served and len(self._served) >= MAX_NAMESPACES:
+            self.drops.note(Drop.BRIDGES, "bridges to DDS", str(MAX_NAMESPACES))
             return
         self.prefixes[zid] = prefix
         if prefix not in self._served:

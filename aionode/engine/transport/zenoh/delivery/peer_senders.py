@@ -35,7 +35,7 @@ those of the loop, less than Zenoh's queue holds."""
 CHECK_S: Final = 0.05
 """The interval of checks while the peer accepts nothing, in seconds."""
 
-MOST_THREADS: Final = 200
+MAX_THREADS: Final = 200
 """Number of peers that may have a thread of their own; others share `SHARED` threads, so that a
 process that announces thousands of unresponsive contexts does not cause more."""
 
@@ -121,7 +121,7 @@ class PeerSenders:
         peer = self._peer(participant)
         if peer.send_thread is None:
             self._tidy()
-            if len(self.send_threads()) >= MOST_THREADS:
+            if len(self.send_threads()) >= MAX_THREADS:
                 peer = self._peer(f"shared {hash(participant) % SHARED}")
             if peer.send_thread is None:
                 peer.send_thread = SendThread("aionode-peer", self._waker)

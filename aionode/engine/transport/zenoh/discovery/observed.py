@@ -33,7 +33,7 @@ LINKS: Final = "links"
 OLDER_S: Final = 0.2
 """How long contexts that have sent no report are asked whether they are alive, in seconds."""
 
-MOST_BYTES: Final = 64 << 20
+MAX_BYTES: Final = 64 << 20
 """Maximum size of all answers to one query that are kept, in bytes."""
 
 ANSWER_BYTES: Final = 1000
@@ -137,7 +137,7 @@ class Observed:
     ) -> dict[str, bytes]:
         """Return what each context answers on one key; one that is too large counts as none."""
         found: dict[str, bytes] = {}
-        room = MOST_BYTES
+        room = MAX_BYTES
         ended = asyncio.Event()
 
         def take(reply: zenoh.Reply | None) -> None:
