@@ -1,14 +1,13 @@
 """How much code each room of aionode has: lines by package, now and in an earlier commit.
 
 Rooms are those of docs/design.md: a package or module of ``aionode/``, and each transport
-separately, as well as the protocol of bridges to DDS within that of Zenoh. Additions in
-``aionode/rclpy`` to rclpy itself, such as tf2, are counted separately. Generated interfaces, tests
-and documentation are left out. Every line counts, so that denser lines do not hide anything: the
-columns distinguish code, text (docstrings and comments), and lines that only pass names on, which
-are each ``__all__`` and each module that consists of imports.
+separately, as well as the protocol of bridges to DDS within that of Zenoh, and each package of ROS.
+Generated interfaces, tests and documentation are left out. Every line counts, so that denser lines
+do not hide anything: the columns distinguish code, text (docstrings and comments), and lines that
+only pass names on, which are each ``__all__`` and each module that consists of imports.
 
 Run it with ``python benchmarks/lines.py``. ``--since COMMIT`` adds the lines of a commit and the
-difference, ``--room rclpy`` lists the modules of one room.
+difference, ``--room ros_packages/rclpy`` lists the modules of one room.
 """
 
 from __future__ import annotations
@@ -28,39 +27,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 ROOT: Final = Path(__file__).parents[1]
-DIVIDED: Final = ("engine",)
+DIVIDED: Final = ("engine", "ros_packages")
 """Packages whose parts are rooms of their own."""
 
-INNER_ROOMS: Final = ("engine/transport/zenoh/bridge",)
-"""Packages within others that are rooms of their own: one protocol each."""
-
-BESIDE_RCLPY: Final = {
-    "other packages": (
-        "_ament_index_python",
-        "_arrays",  # of ros2_numpy and cv_bridge
-        "_cv_bridge",
-        "_message_filters",
-        "_ros2_numpy",
-        "_rosbag2",
-        "_rosidl_parser",
-        "_rosidl_runtime_py",
-        "_sensor_msgs_py",
-        "_tf2_",
-        "_tf_transformations",
-    ),
-    "message classes": ("_rosidl/",),
-    "start of programs": (
-        "__main__",
-        "_check",
-        "_finder",
-        "_missing",
-        "_module_names",
-        "_program",
-        "_reexports",
-        "_workspace",
-    ),
-}
-"""Additions in ``aionode/rclpy`` to rclpy's modules: the beginnings of their paths."""
+INNER_ROOMS: Final = (
+    "engine/transport/zenoh/bridge",
+    "engine/transport/zenoh",
+    "engine/transport/link",
+    "engine/transport/rcl",
+    "engine/transport/reliability",
+)
+"""Packages within others that are rooms of their own, the innermost first: one protocol each."""
 
 
 @dataclass
@@ -181,10 +158,6 @@ def room_of(path: str) -> str:
             return room
     if parts[0] in DIVIDED and len(parts) > 2:
         return "/".join(parts[:2])
-    if parts[0] == "rclpy":
-        inside = "/".join(parts[1:])
-        beside = [room for room, begins in BESIDE_RCLPY.items() if inside.startswith(begins)]
-        return "/".join([parts[0], *beside])
     return parts[0]
 
 
