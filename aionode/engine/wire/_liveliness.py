@@ -14,6 +14,7 @@ that ROS does not allow, as any program may declare any token with this prefix.
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from typing import Final
 
@@ -23,7 +24,7 @@ from msgspec import Struct
 from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
 from aionode.engine.wire._key_expression import dds_type, demangle, mangle, ros_type
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
-from aionode.names import is_full_name, is_full_node_name, is_plain
+from aionode.names import is_full_name, is_full_node_name
 from aionode.qos import (
     DEFAULT_DEPTH,
     DurabilityPolicy,
@@ -62,8 +63,16 @@ KIND_CHUNKS: Final = {
 }
 KINDS: Final = {chunk: kind for kind, chunk in KIND_CHUNKS.items()}
 
-NODE_CHUNKS: Final = 9
-ENDPOINT_CHUNKS: Final = 13
+CHUNK: Final = "[A-Za-z0-9_%@:,.+~-]+"
+NUMBER: Final = "([0-9]{1,20})"
+
+TOKEN: Final = re.compile(
+    f"{PREFIX}/{NUMBER}/({CHUNK})/{NUMBER}/{NUMBER}" + f"/({CHUNK})" * 4 + f"((?:/{CHUNK})*)"
+)
+"""A token, of the characters that `is_plain` allows; every process parses those of all others."""
+
+ENDPOINT_CHUNKS: Final = 4
+"""Minimum number of chunks in the token of an endpoint besides those in the token of its node."""
 
 LONGEST_TOKEN: Final = 4096
 """Maximum token length in characters: ROS names have at most 255, and a token has five."""
@@ -166,30 +175,24 @@ def duration_text(duration: Duration) -> str:
 
 def parse_token(key: str) -> Token | None:
     """Parse a token; return None if its format is unknown."""
-    chunks = key.split("/")
-    if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
+    found = TOKEN.fullmatch(key) if len(key) <= LONGEST_TOKEN else None
+    if found is None:
         return None
-    if len(key) > LONGEST_TOKEN or not is_plain(key):
-        return None
-    _, domain, zid, node_id, entity_id, kind, enclave, namespace, name = chunks[:NODE_CHUNKS]
-    numbers = [number(text) for text in (domain, node_id, entity_id)]
-    if None in numbers:
-        return None
-    domain_id, nid, eid = (n or 0 for n in numbers)
-    node = shared_node(zid, nid, name, namespace, enclave)
+    domain, zid, node_id, entity_id, kind, enclave, namespace, name, rest = found.groups()
+    node = shared_node(zid, int(node_id), name, namespace, enclave)
     if node is None:
         return None
     if kind == NODE_KIND:
-        return Token(domain_id, node)
-    endpoint = parse_endpoint(key, node, eid, kind, chunks[NODE_CHUNKS:])
-    return None if endpoint is None else Token(domain_id, endpoint)
+        return Token(int(domain), node)
+    endpoint = parse_endpoint(key, node, int(entity_id), kind, rest[1:].split("/"))
+    return None if endpoint is None else Token(int(domain), endpoint)
 
 
 def parse_endpoint(
     key: str, node: NodeInfo, endpoint_id: int, kind: str, chunks: list[str]
 ) -> EndpointInfo | None:
     """Return the endpoint described by the last chunks of its token."""
-    if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
+    if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS:
         return None
     name_chunk, dds_name, type_hash, qos_text = chunks[:4]
     name = shared_name(name_chunk)
