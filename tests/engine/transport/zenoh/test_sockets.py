@@ -8,7 +8,7 @@ import select
 import socket
 import sys
 import threading
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -177,6 +177,29 @@ def test_a_connection_is_searched_for_once(
 
         assert find(pairs) == first
         assert set(_sockets.known) >= pairs
+
+
+def test_a_new_connection_is_found_without_reading_all_descriptors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With a thousand of them, a start beside thirty peers took 0.65 s in place of 0.2."""
+    read: list[int | str] = []
+    target_of = _sockets.target_of
+
+    def note(name: int | str) -> str:
+        read.append(name)
+        return target_of(name)
+
+    with ExitStack() as stack, listening("127.0.0.1") as (_, port):
+        for _ in range(400):
+            stack.callback(os.close, os.open(os.devnull, os.O_RDONLY))
+        with dialling("127.0.0.1", port) as session:
+            pairs = pairs_of(session)
+            monkeypatch.setattr(_sockets, "target_of", note)
+
+            assert find(pairs).keys() == pairs
+
+    assert len(read) < 200
 
 
 def test_what_was_found_is_forgotten_when_its_connection_is_closed() -> None:

@@ -78,6 +78,39 @@ async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_leas
             await until_set(session_of(context), (False, limit_ms))
 
 
+@pytest.mark.parametrize(
+    ("few", "timers"), [(1000, 1), (0, 3)], ids=["few descriptors", "many descriptors"]
+)
+async def test_only_a_process_of_many_descriptors_starts_a_thread_for_one_connection(
+    few: int, timers: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each start of a process cost every other one of its domain a thread, a millisecond.
+
+    A context that opens starts one for all its connections.
+    """
+    monkeypatch.setattr(lingering, "FEW", few)
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    started: list[threading.Thread] = []
+    start = threading.Thread.start
+
+    def note(thread: threading.Thread) -> None:
+        if isinstance(thread, threading.Timer):
+            started.append(thread)
+        start(thread)
+
+    async with two_contexts() as both:
+        for context in both:
+            await until_set(session_of(context), (False, UNREAD_MS))
+        # Only the two connections of the third one are missing.
+        monkeypatch.setattr(lingering, "SETTLE_S", 0.5)
+        monkeypatch.setattr(threading.Thread, "start", note)
+        async with Context() as third:
+            for context in (*both, third):
+                await until_set(session_of(context), (False, UNREAD_MS))
+
+    assert len(started) == timers
+
+
 async def test_a_closed_context_looks_for_sockets_no_more() -> None:
     """A remaining timer would keep the closed session alive."""
     setters = living(lingering.SocketOptions)

@@ -28,7 +28,13 @@ from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._switch import is_mended
 from aionode.engine.transport.zenoh._defects.blocked_sends import unread_ms
 from aionode.engine.transport.zenoh.connections.handlers import direct
-from aionode.engine.transport.zenoh.connections.sockets import NO_LINGER, duplicates, find, pair_of
+from aionode.engine.transport.zenoh.connections.sockets import (
+    NO_LINGER,
+    duplicates,
+    find,
+    numbers,
+    pair_of,
+)
 
 if TYPE_CHECKING:
     from aionode.engine.transport.zenoh.connections.sockets import Pair
@@ -40,7 +46,13 @@ UNREACHABLE_MS: Final = 5_000
 milliseconds."""
 
 SETTLE_S: Final = 0.5
-"""Delay before looking for sockets after a new connection, in seconds; several come at once."""
+"""Delay before looking for the sockets of several new connections, in seconds."""
+
+FEW: Final = 200
+"""Up to this many descriptors of a process, the socket of a single connection is looked for at
+once, in 0.1 ms: a thread for it takes several times as much, in every process of the domain
+whenever another one starts. With more of them, a process of many contexts would look through all
+for each of hundreds of connections."""
 
 
 class SocketOptions:
@@ -52,7 +64,8 @@ class SocketOptions:
     retransmits after 0.2, 0.4, 0.8 … s, and after a network outage of 30 s it is silent for up to
     30 s more. A new connection finds the network immediately.
 
-    It works until the session is closed. The connections of a burst are looked for at once.
+    It works until the session is closed. The first connections are looked for together, as are
+    all in a process with many descriptors.
 
     Args:
         session: The session.
@@ -67,6 +80,7 @@ class SocketOptions:
 
     def __init__(self, session: zenoh.Session) -> None:
         self._timer: threading.Timer | None = None
+        self._is_new = True
         self._closed = not sys.platform.startswith("linux")
         # It exists as long as this object, which its callback holds until the session is closed.
         self._listener = session.info.declare_link_events_listener(
@@ -90,16 +104,26 @@ class SocketOptions:
                 return
             if pair := pair_of(event.link):
                 self._new[pair] = str(event.link.dst)
-            if self._timer is None:
-                self._timer = threading.Timer(SETTLE_S, self._set)
+            is_first, self._is_new = self._is_new, False
+            if self._timer is not None:
+                return
+            if is_first or len(numbers()) > FEW:
+                self._timer = threading.Timer(SETTLE_S, self._set_later)
                 self._timer.name = "aionode-zenoh"
                 self._timer.daemon = True
                 start_thread(self._timer)
+                return
+        self._set()
 
-    def _set(self) -> None:
-        """Set the options of all new connections, in the timer's thread."""
+    def _set_later(self) -> None:
+        """Set the options of several connections, in the timer's thread."""
         with self._lock:
             self._timer = None
+        self._set()
+
+    def _set(self) -> None:
+        """Set the options of all new connections."""
+        with self._lock:
             new = self._new.copy()
             self._new.clear()
         peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}

@@ -54,6 +54,7 @@ __all__ = [
     "find",
     "info_of",
     "number_in",
+    "numbers",
     "pair_of",
     "polled_by_zenoh",
     "send_progress",
@@ -113,6 +114,9 @@ Descriptor = tuple[int, int]
 lock = threading.Lock()  # held to read and change `known`
 known: dict[Pair, Descriptor] = {}
 """Descriptors of connections found before, so that most searches read neither list."""
+
+holders: dict[int, Pair] = {}
+"""The connection that was last found at each descriptor's number."""
 
 
 class Pair(Struct, frozen=True):
@@ -178,13 +182,17 @@ def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
     with lock:
         result = {pair: known[pair] for pair in pairs if pair in known and is_open(known[pair])}
         missing = {pair for pair in pairs if pair not in result}
+        for pair in missing:
+            known.pop(pair, None)
         if missing and (inodes := inodes_of(missing)):
-            numbers = {inode: number for number, inode in sockets()}
-            for pair in [pair for pair, (_, inode) in known.items() if inode not in numbers]:
-                del known[pair]
-            for pair, inode in inodes.items():
-                if inode in numbers:
-                    result[pair] = known[pair] = numbers[inode], inode
+            sought = {inode: pair for pair, inode in inodes.items()}
+            for number, inode in sockets():
+                if found := sought.pop(inode, None):
+                    known.pop(holders.get(number, found), None)  # closed: the number was reused
+                    holders[number] = found
+                    result[found] = known[found] = number, inode
+                    if not sought:
+                        break
         return result
 
 
@@ -246,21 +254,25 @@ def listed_form(address: Address) -> bytes:
 
 
 def sockets() -> Iterator[Descriptor]:
-    """Yield the sockets of this process."""
+    """Yield the sockets of this process, the highest number first: most new ones are there."""
     for number, target in descriptors():
         if target.startswith("socket:["):
             yield number, int(target[8:-1])
 
 
 def descriptors() -> Iterator[tuple[int, str]]:
-    """Yield the number of each descriptor of this process, and its target."""
-    try:
-        names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
-    except OSError:  # no descriptors are left, or there is no /proc
-        return
-    for name in names:
+    """Yield the number of each descriptor of this process, and its target, from the last one."""
+    for name in reversed(numbers()):
         with suppress(OSError):  # closed meanwhile
             yield int(name), target_of(name)
+
+
+def numbers() -> list[str]:
+    """Return the numbers of all descriptors of this process, which takes 0.5 µs for each."""
+    try:
+        return os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
+    except OSError:  # no descriptors are left, or there is no /proc
+        return []
 
 
 def target_of(name: int | str) -> str:
