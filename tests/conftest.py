@@ -92,7 +92,7 @@ PROCESSES = (
     "tests/test_web_robot.py",
     "tests/typing/",
 )
-"""Files and folders whose tests start processes; they take long, so workers start with them."""
+"""Files and folders whose tests start processes; they take long, so workers begin with some."""
 
 BOTH_LOOPS = (
     "tests/clock/",
@@ -243,7 +243,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                 elif item.nodeid.startswith(TRANSPORTS):
                     item.add_marker("slow")
     if hasattr(config, "workerinput"):  # of pytest-xdist
-        items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
+        mix(items)
+
+
+def mix(items: list[pytest.Item]) -> None:
+    """Alternate between files whose tests mostly wait for processes, and others.
+
+    With the former first, all workers would wait for a while, and later compete for the processors.
+    """
+    places: dict[Path, tuple[int, bool]] = {}
+    counts = {True: 0, False: 0}
+    for item in items:
+        if item.path not in places:
+            waits = item.nodeid.startswith(PROCESSES)
+            places[item.path] = (counts[waits], not waits)
+            counts[waits] += 1
+    items.sort(key=lambda item: places[item.path])
 
 
 def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..., Awaitable[None]]:

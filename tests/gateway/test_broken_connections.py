@@ -228,7 +228,10 @@ async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
         session = session_of(gateway)
         await until(lambda: session.rights.refused)
         assert got == [1.0, 0.0]
-        asked = [await ping_of(reader) for _ in range(2)]
+        asked = []
+        for _ in range(2):
+            asked.append(await ping_of(reader))
+            writer.write(frame(b"aionode", PONG))  # else a busy machine makes it a lost client
         assert len({*asked}) == 2
         assert min(map(len, asked)) >= 8
         writer.write(frame(asked[0], PONG))  # RFC 6455 lets a client answer any of them

@@ -196,7 +196,7 @@ async def test_a_port_that_another_program_has_is_passed_over(
         async with quiet_node("one") as one:
             assert answering_ports(ports[2:]) == ports[2:]
             async with quiet_node("two") as two:
-                assert {"one", "two"} <= {n.name for n in two.graph.nodes()}
+                await both_seen(two)
             assert one.context.ok()
 
     assert sayings(caplog) == []
