@@ -590,13 +590,13 @@ async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
 ) -> None:
     """The messages are older than `silence_sec`, and were not commands for now."""
     subscription = machine_node.create_subscription(
-        Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.2
+        Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.5
     )
     publisher = machine_node.create_publisher(Int32, "n", 10)
     send(publisher, 1)
     await settle()
     send(publisher, 2, 3)
-    time.sleep(0.21)  # noqa: ASYNC251  # as a callback that blocks
+    time.sleep(0.51)  # noqa: ASYNC251  # as a callback that blocks
     if another_comes:
         send(publisher, 4)
     await settle()
