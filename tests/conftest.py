@@ -205,11 +205,11 @@ def without_trifles(send: Callable[..., None]) -> Callable[..., None]:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use two workers per processor: half of a test's time is spent waiting.
+    """Use two workers per processor and two more: half of a test's time is spent waiting.
 
-    Each further one collects all tests again, which takes as long as what it runs meanwhile.
+    Each collects all tests first. On two processors, six are done before four are.
     """
-    return 2 * (os.cpu_count() or 1)
+    return 2 * (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -124,6 +124,7 @@ def test_a_yaml_file_without_what_it_needs_is_refused(tmp_path: Path) -> None:
         chunk_compression(None, str(file), "zstd")
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_keys_pause_and_step_and_change_the_rate(run: str) -> None:
     """On a terminal, with a line of progress; the terminal is as before afterwards."""

@@ -56,6 +56,7 @@ def test_two_bags_are_compared(tmp_path: Path) -> None:
     assert '"field":"data","a":9.0,"b":9.5}' in aionode("diff", a, b, "--json").output
 
 
+@pytest.mark.slow
 def test_the_shortest_failing_piece_is_written(tmp_path: Path) -> None:
     """One message of twenty is left."""
     path = write(tmp_path / "run")

@@ -38,6 +38,7 @@ def test_export_says_what_became_of_the_messages(
     assert text.endswith("out: 2 episodes, 26 rows at 30 fps\n")
 
 
+@pytest.mark.slow
 def test_export_over_the_limits_ends_with_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -115,6 +116,7 @@ def in_terminal(tmp_path: Path) -> Iterator[Recording]:
     opened.command.close(force=True)
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 def test_keys_begin_and_end_episodes(in_terminal: Recording) -> None:
     """One hand is at the robot."""

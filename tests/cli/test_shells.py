@@ -53,6 +53,7 @@ def child(shell: str, tmp_path: Path) -> Iterator[Any]:
         child.close(force=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", SHELLS)
 def test_a_type_is_completed_in_two_steps(child: Any) -> None:
     """First the package, without a space after the slash, then the name: a single word."""
@@ -64,6 +65,7 @@ def test_a_type_is_completed_in_two_steps(child: Any) -> None:
     child.expect("bool success")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", SHELLS)
 def test_values_are_completed_as_one_word(child: Any) -> None:
     """They contain blanks, commas and quotes; the command gets them as they are in YAML."""

@@ -116,6 +116,7 @@ async def test_what_cannot_be_plotted_is_named(
         await asyncio.gather(plot(tool, [field], output=screen.output), manual_clock.advance(1.0))
 
 
+@pytest.mark.slow
 async def test_messages_that_are_not_drawn_are_counted(
     wheels: Node, tool: Node, manual_clock: ManualClock, running: Any, screen: Any
 ) -> None:

@@ -15,6 +15,7 @@ LARGE_BYTES = "300000"
 WRITERS = 3
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_a_reader_keeps_nothing_of_publishers_that_have_ended(
     monkeypatch: pytest.MonkeyPatch,

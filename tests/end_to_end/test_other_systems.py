@@ -54,6 +54,7 @@ def test_every_module_is_imported(system: str) -> None:
     assert output_of(system, MEMBER, "import") == "imported\n"
 
 
+@pytest.mark.slow
 @both_systems
 def test_two_nodes_of_one_process_talk(system: str) -> None:
     """With topics, timers and services."""

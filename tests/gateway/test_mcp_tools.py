@@ -358,6 +358,7 @@ JSON = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(values=st.dictionaries(st.text(), JSON), times=st.integers(1, 100))
 def test_answers_are_bounded(values: dict[str, Any], times: int) -> None:
     """By their size as JSON; `json` puts a space behind each comma and colon."""

@@ -194,6 +194,7 @@ async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lin
 # All callers
 
 
+@pytest.mark.slow
 def test_each_kind_of_refusal_happens_somewhere() -> None:
     """A kind that nothing records would be dead."""
     codes, names = set(), set()

@@ -180,6 +180,7 @@ def test_what_a_repair_could_not_save_is_reported(tmp_path: Path) -> None:
     assert re.search(r"repaired: \d+ bytes could not be saved", found.text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("times", [1, 2])
 def test_a_bag_that_was_cut_after_its_recording_says_what_is_missing(
     tmp_path: Path, times: int

@@ -442,6 +442,7 @@ async def test_what_is_destroyed_leaves_the_graph(node: Node) -> None:
     assert publisher not in node.publishers
 
 
+@pytest.mark.slow
 async def test_cancelled_waits_leave_nothing_in_the_graph(node: Node) -> None:
     """A program that waits with timeouts for days must not grow."""
     await settle()

@@ -93,6 +93,7 @@ def test_a_message_on_the_command_line_has_the_same_limits() -> None:
         message_from_yaml(String, BOMB)
 
 
+@pytest.mark.slow
 def test_a_parameter_file_has_as_many_values_at_most(monkeypatch: pytest.MonkeyPatch) -> None:
     """The rules of rcl allow no aliases, but any number of values."""
     monkeypatch.setenv(VALUES_VARIABLE, "1000")

@@ -296,6 +296,7 @@ def test_the_names_are_those_of_rclpy() -> None:
     assert json.loads(done.stdout) == EXPECTED
 
 
+@pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize("first", ["from rclpy.action import ActionClient", "import rclpy.time"])
 def test_a_module_of_rclpy_is_an_attribute_whatever_was_imported_first(first: str) -> None:

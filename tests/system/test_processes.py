@@ -107,6 +107,7 @@ async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_pat
         assert not alive(int(orphan.read_text()))
 
 
+@pytest.mark.slow
 async def test_what_becomes_another_program_meanwhile_is_not_lost(
     system: System, tmp_path: Path
 ) -> None:

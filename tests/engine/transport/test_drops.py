@@ -85,6 +85,7 @@ def test_only_so_many_subjects_are_told_apart(caplog: pytest.LogCaptureFixture) 
     assert drops.of(Drop.MALFORMED).total() == 2 * SUBJECTS
 
 
+@pytest.mark.slow
 def test_each_drop_happens_somewhere() -> None:
     """A kind that is never recorded is useless."""
     named = {
