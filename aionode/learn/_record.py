@@ -211,6 +211,8 @@ class Episodes:
         finally:
             if self.current is episode:
                 await self._finish(episode.outcome or "success")
+            else:  # another task ends it, and may still be closing its bag
+                await episode._ended.wait()
 
     async def start(self, task: str = "") -> Episode:
         """Begin an episode.

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from aionode import bag, image
+from aionode._process.concurrency import checkpoint
 from aionode.action import GoalStatus
 from aionode.clock import Time
 from aionode.engine.context import Context
@@ -188,6 +189,17 @@ async def test_the_page_of_the_gateway_begins_and_ends_episodes(tmp_path: Path) 
             )
         assert episodes.current is None
     assert metadata(tmp_path / "episode_0000")["outcome"] == "success"
+
+
+async def test_a_block_whose_episode_is_ended_elsewhere_waits_for_its_bag(tmp_path: Path) -> None:
+    """Otherwise the result of a goal says that nothing was recorded."""
+    async with recording(tmp_path) as (robot, episodes), asyncio.TaskGroup() as tasks:
+        async with episodes.record("push") as episode:
+            await robot.step(3)
+            tasks.create_task(episodes.end())
+            while episodes.current is episode:
+                await checkpoint()
+        assert episode.messages == 9
 
 
 async def test_a_goal_records_an_episode_until_it_is_ended(tmp_path: Path) -> None:
