@@ -489,7 +489,7 @@ class Context:
         Must not be cancelled half-way: call it through `to_the_end`.
 
         Args:
-            task: That of the caller, which may have left the `_acquire` to another one.
+            task: The task that calls this; another task may have called `_acquire`.
         """
         if self._inherited:
             return

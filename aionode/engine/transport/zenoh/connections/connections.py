@@ -146,7 +146,7 @@ class Connections:
     ) -> None:
         """Wait until `expected` peers, and others dialled meanwhile, are connected.
 
-        Gives up if they do not connect in time, after about a second.
+        Gives up after about a second without the first, or a quarter of one without a further one.
 
         Args:
             expected: Number of peers that connect at once.
