@@ -70,6 +70,7 @@ def all_attacks() -> list[Attack]:
             pair(env=rules.robot),
             around=rules,
             env=rules.visitor,
+            short=True,
         ),
         Attack(
             "a batch in the talker's name, as if from its link",
@@ -139,7 +140,16 @@ def all_attacks() -> list[Attack]:
             "describe_large",
             pair(curious=True),
         ),
-        Attack("terminal escapes in names", "member", "announce_escapes", pair(), 8.0, LISTS, 3.0),
+        Attack(
+            "terminal escapes in names",
+            "member",
+            "announce_escapes",
+            pair(),
+            8.0,
+            LISTS,
+            3.0,
+            short=True,
+        ),
         Attack("2000 subscriptions with incompatible QoS", "member", "subscribe_oddly", pair()),
         Attack(
             "5000 subscriptions of one topic",

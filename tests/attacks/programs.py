@@ -13,10 +13,10 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import replace
 
 import psutil
 import zenoh  # plays another participant, without aionode
+from msgspec.structs import replace
 
 from aionode.engine.transport.link import _protocol as protocol
 from aionode.engine.transport.link._continuation import STOPS, seal
