@@ -20,7 +20,7 @@ from aionode._process.signals import signals_to, woken_by_signals
 from aionode._process.tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
 from aionode.endpoints.core.node_core import core_of, is_named
-from aionode.engine.context import Context
+from aionode.engine.context import obeying
 from aionode.errors import AionodeError, ConfigurationError, InvalidROSArgsError
 from aionode.logging import configure, get_logger, release_root
 from aionode.node import Node
@@ -103,7 +103,7 @@ def run(
         stop = Stop()
         # Closing the loop waits for threads, so signals are handled until after that.
         with (
-            Context._obeying(arguments),
+            obeying(arguments),
             signals_to(stop),
             Freeze() as freeze,
             asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner,

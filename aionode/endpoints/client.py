@@ -11,6 +11,7 @@ from aionode.endpoints.core.future import Futures, asks
 from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import ClientStats
 from aionode.engine.causes import Party, Run, take
+from aionode.engine.membership import register
 from aionode.engine.rules.service_events import REQUEST_SENT, RESPONSE_RECEIVED
 from aionode.engine.transport.base import SampleInfo
 from aionode.errors import (
@@ -25,12 +26,11 @@ from aionode.errors import (
 from aionode.message import Message, checker
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
-    from aionode.clock import TimeBase
     from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
-    from aionode.engine.transport.base import Call, Requester
+    from aionode.engine.transport.base import Call
 
 __all__ = ["Client", "Exchange"]
 
@@ -52,16 +52,19 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self,
         setup: EndpointSetup,
         srv_type: Any,
-        requesters: Sequence[Requester],
-        time_base: TimeBase,
         create_publisher: Callable[..., Publisher[Any]],
     ) -> None:
         subject = f"client of {setup.endpoint.name}"
         super().__init__(subject, setup, srv_type, create_publisher, EndStage.LAST)
         self.stats = ClientStats()
-        self._requesters = tuple(requesters)
+        self._requesters = tuple(  # one per transport
+            register(
+                setup.context,
+                lambda transport: transport.create_requester(setup.endpoint, srv_type),
+            )
+        )
         self._check = checker(srv_type.Request)
-        self._now_ns = time_base.system_ns
+        self._now_ns = setup.context.time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
         self._futures = Futures(self)
         self._warned = False

@@ -20,6 +20,7 @@ from aionode.endpoints.core.noting_writer import NotingWriter
 from aionode.endpoints.lease import CommandLease
 from aionode.endpoints.stats import PublisherStats
 from aionode.engine.causes import Party
+from aionode.engine.membership import register
 from aionode.engine.transport.base import Writer
 from aionode.errors import (
     EntityDestroyedError,
@@ -32,9 +33,7 @@ from aionode.message import Message, checker, snapshot
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, depth_of, keeps_all
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from aionode.clock import Clock, TimeBase
+    from aionode.clock import Clock
     from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
     from aionode.engine.transport.base import StopSender
@@ -83,21 +82,23 @@ class Publisher(Endpoint, Generic[MsgT]):
         self,
         setup: EndpointSetup,
         msg_type: type[MsgT],
-        make_writers: Callable[[], Sequence[Writer]],
-        time_base: TimeBase,
         event_callbacks: PublisherEventCallbacks | None = None,
     ) -> None:
         super().__init__(f"publisher of {setup.endpoint.name}", setup, EndStage.LAST)
         self.msg_type = msg_type
+        self._time_base = time_base = setup.context.time_base
         self._now_ns = time_base.system_ns
-        self._time_base = time_base
         self._monitor: PublisherMonitor | None = None  # if a policy or the program needs one
         qos = self.qos_profile
         if event_callbacks is not None or is_limited(qos.deadline, qos.liveliness_lease_duration):
             # Before anything is announced to others, as it may reject callbacks.
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
         self._lease: CommandLease[MsgT] | None = None  # while it is held
-        writers = self._all_writers = tuple(make_writers())  # one per transport
+        writers = self._all_writers = tuple(  # one per transport
+            register(
+                setup.context, lambda transport: transport.create_writer(setup.endpoint, msg_type)
+            )
+        )
         self.stats = PublisherStats(writers, self._matched)
         # The tasks in `drain`, and whether `_close` cancelled them.
         self._draining: dict[asyncio.Task[Any], bool] = {}

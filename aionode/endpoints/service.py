@@ -19,17 +19,16 @@ from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.causes import note_end
+from aionode.engine.membership import register
 from aionode.engine.rules.service_events import REQUEST_RECEIVED, RESPONSE_SENT
 from aionode.message import Message, type_name
 from aionode.message.memory_size import memory_size
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from aionode.endpoints.core.callback_runner import OnError
     from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
-    from aionode.engine.transport.base import Registration, Request
+    from aionode.engine.transport.base import Request
 
 __all__ = ["Service", "ServiceCallback"]
 
@@ -78,7 +77,6 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         super().__init__(subject, setup, srv_type, create_publisher)
         self.callback = callback
         self.stats = CallbackStats()
-        self._registrations: list[Registration] = []  # one per transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True, slice_ns=setup.callbacks.slice_ns
         )
@@ -86,7 +84,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         if size_of is not None:
             self._message_queue.weigh(
                 lambda request: size_of(request.message),
-                setup.queue_bytes,
+                setup.context.network.queue_bytes,
                 partial(report_heavy, setup, "refused"),
                 unweighed=0,
             )
@@ -100,16 +98,16 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             callback, self, self.stats, on_error=on_error, offload=offload
         )
         self._party = self._runner.party_of(self._endpoint)
+        self._registrations = register(  # one per transport
+            setup.context,
+            lambda transport: transport.create_server(self._endpoint, srv_type, self._serve),
+        )
 
     def __repr__(self) -> str:
         return (
             f"<Service {self.srv_name} {self._endpoint.type_name} "
             f"received={self.stats.received} errors={self.stats.errors}>"
         )
-
-    def _add_registrations(self, registrations: Sequence[Registration]) -> None:
-        """Keep the transports' registrations of this server, to be closed with it."""
-        self._registrations.extend(registrations)
 
     def _serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
         """Accept a request from a transport; see `Serve` for `inline_deadline_ns`."""

@@ -30,6 +30,7 @@ from aionode.endpoints.core.subscription_reader import (
     size_of_raw,
 )
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.membership import register
 from aionode.engine.transport.base import ReaderRegistration
 from aionode.engine.wire.byte_filter import decoding
 from aionode.errors import EntityDestroyedError
@@ -39,7 +40,6 @@ from aionode.message.memory_size import memory_size
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
 
-    from aionode.clock import TimeBase
     from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints.core.callback_runner import OnError
     from aionode.endpoints.core.endpoint import EndpointSetup
@@ -80,22 +80,23 @@ class Subscription(Endpoint, Generic[ItemT]):
         setup: EndpointSetup,
         msg_type: type[Message],
         callback: SubscriptionCallback[ItemT] | None,
-        time_base: TimeBase,
         *,
         concurrent: bool | int,
         raw: Raw,
         on_error: OnError,
         offload: bool,
+        content_filter_options: ContentFilterOptions | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         silence: Silence | None = None,
         take: Take | None = None,
     ) -> None:
         super().__init__(f"subscription of {setup.endpoint.name}", setup)
+        self._time_base = time_base = setup.context.time_base
         self.msg_type = msg_type
         self.raw = bool(raw)
         self.callback = callback or take
         self.stats = CallbackStats()
-        self._registrations: list[Registration] = []  # one per transport
+        self._registrations: list[Registration] = []  # one per transport, once it is complete
         self._content_filter: ContentFilterOptions | None = None
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._turn_ends_ns = 0
@@ -112,20 +113,19 @@ class Subscription(Endpoint, Generic[ItemT]):
         options: dict[str, Any] = {"raw": raw, "wants_info": wants == 2}
         if take is not None:
             self._reader = DirectReader(setup.endpoint, self.stats, time_base, take)
-        elif setup.causes is not None:
+        elif self._causes is not None:
             self._reader = CausalReader(
-                setup.endpoint, self.stats, time_base, log=setup.causes, **options
+                setup.endpoint, self.stats, time_base, log=self._causes, **options
             )
         else:
             self._reader = SubscriptionReader(setup.endpoint, self.stats, time_base, **options)
         size_of = size_of_raw if raw else memory_size(msg_type)
         if size_of is not None:
             self._reader.weigh_messages(
-                size_of, setup.queue_bytes, partial(report_heavy, setup, "dropped")
+                size_of, setup.context.network.queue_bytes, partial(report_heavy, setup, "dropped")
             )
         if self._runner is not None:
             self._reader.set_runner(self._runner)
-        self._time_base = time_base
         self._runs = False
         self._monitor: SubscriptionMonitor | None = None  # if a policy or the program needs one
         qos = self.qos_profile
@@ -138,6 +138,16 @@ class Subscription(Endpoint, Generic[ItemT]):
         if silence is not None and self._runner is not None:
             self._silence_watch = self._make_watch(silence, self._runner, on_error)
             self._reader.set_watch(self._silence_watch)
+        if content_filter_options is not None:
+            self.set_content_filter(
+                content_filter_options.filter_expression,
+                content_filter_options.expression_parameters,
+            )
+        # Last, as messages may arrive from now on.
+        self._registrations = register(
+            setup.context,
+            lambda transport: transport.create_reader(self._endpoint, msg_type, self._reader),
+        )
 
     def __repr__(self) -> str:
         return (
@@ -310,10 +320,6 @@ class Subscription(Endpoint, Generic[ItemT]):
             )
 
     # Called by the node
-
-    def _add_registrations(self, registrations: Sequence[Registration]) -> None:
-        """Keep the transports' registrations of this reader, to be closed with it."""
-        self._registrations.extend(registrations)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""

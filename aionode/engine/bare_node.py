@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import qos
 from aionode.engine.causes import Party
+from aionode.engine.membership import describe_endpoint, describe_node, join, register
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.local import LocalWriter
 from aionode.errors import EntityDestroyedError, QueueFullError
@@ -293,14 +294,10 @@ class BareNode:
         self, context: Context, name: str, namespace: str = "/", enclave: str = "/"
     ) -> None:
         self.context = context
-        self.info = context._describe_node(name, namespace, enclave)
+        self.info = describe_node(context, name, namespace, enclave)
         self._endpoints: dict[BareEndpoint, Any] = {}  # each with its type
         self._destroyed = False
-        context._add_node(self, self._abandon)
-        self._registrations = self.context._register(
-            lambda transport: transport.create_node(self.info)
-        )
-        context.graph.add_node(self.info)
+        self._leave = join(context, self, self.info, self._abandon)
 
     def create_publisher(self, msg_type: Any, topic: str, profile: QoSProfile) -> BarePublisher:
         """Create a publisher of `msg_type`, a message class or the result of `serialized` for one.
@@ -309,8 +306,8 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.PUBLISHER, topic, msg_type, profile)
-        writers = self.context._register(
-            lambda transport: transport.create_writer(endpoint, msg_type)
+        writers = register(
+            self.context, lambda transport: transport.create_writer(endpoint, msg_type)
         )
         return self._add(BarePublisher(self, endpoint, writers), msg_type)
 
@@ -327,8 +324,8 @@ class BareNode:
         endpoint = reader.endpoint = self._describe(
             EndpointKind.SUBSCRIPTION, topic, msg_type, profile
         )
-        registrations = self.context._register(
-            lambda transport: transport.create_reader(endpoint, msg_type, reader)
+        registrations = register(
+            self.context, lambda transport: transport.create_reader(endpoint, msg_type, reader)
         )
         return self._add(BareEndpoint(self, endpoint, registrations), msg_type)
 
@@ -341,8 +338,8 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.SERVER, service, srv_type, profile)
-        registrations = self.context._register(
-            lambda transport: transport.create_server(endpoint, srv_type, serve)
+        registrations = register(
+            self.context, lambda transport: transport.create_server(endpoint, srv_type, serve)
         )
         return self._add(BareEndpoint(self, endpoint, registrations), srv_type)
 
@@ -353,8 +350,8 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.CLIENT, service, srv_type, profile)
-        requesters = self.context._register(
-            lambda transport: transport.create_requester(endpoint, srv_type)
+        requesters = register(
+            self.context, lambda transport: transport.create_requester(endpoint, srv_type)
         )
         return self._add(BareClient(self, endpoint, requesters), srv_type)
 
@@ -385,10 +382,7 @@ class BareNode:
         self._destroyed = True
         for endpoint in reversed(list(self._endpoints)):
             endpoint.destroy()
-        for registration in self._registrations:
-            registration.close()
-        self.context.graph.remove_node(self.info)
-        self.context._remove_node(self)
+        self._leave()
 
     def _abandon(self) -> None:
         """Mark the node as destroyed without closing anything; for a forked child."""
@@ -402,14 +396,7 @@ class BareNode:
             raise EntityDestroyedError(
                 f"node {self.info.fully_qualified_name}", f"create {kind.value}"
             )
-        others = [
-            endpoint.qos for endpoint in self.context.graph.endpoints(kind.opposite, name=name)
-        ]
-        if kind is EndpointKind.PUBLISHER:
-            profile = qos.best_available_for_publisher(profile, others)
-        elif kind is EndpointKind.SUBSCRIPTION:
-            profile = qos.best_available_for_subscription(profile, others)
-        return self.context._describe_endpoint(kind, self.info, name, ros_type, profile.resolved())
+        return describe_endpoint(self.context, kind, self.info, name, ros_type, profile)
 
     def _add(self, endpoint: EndpointT, ros_type: Any) -> EndpointT:
         self._endpoints[endpoint] = ros_type

@@ -10,17 +10,16 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import ctypes
+import itertools
 import math
 import os
 import threading
 import uuid
 import weakref
 from collections import Counter
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
-from msgspec import structs
-
-from aionode._distribution import NO_TYPE_HASH, choose_distribution
+from aionode._distribution import choose_distribution
 from aionode._process.concurrency import spin_before_blocking, to_the_end
 from aionode._process.imports import uncollected
 from aionode._process.sudden_end import SENDS
@@ -30,17 +29,14 @@ from aionode.engine.causes import CauseLog
 from aionode.engine.loop_affinity import LoopAffinity
 from aionode.engine.reports.duplicates import DuplicateReport
 from aionode.engine.reports.mismatches import MismatchReport
-from aionode.engine.transport.base import Registration, Transport
+from aionode.engine.transport.base import Transport
 from aionode.engine.transport.drops import Drops
 from aionode.engine.transport.local import LocalTransport
 from aionode.engine.transport.network import network_from, new_participant, unheard_middleware
-from aionode.engine.wire._liveliness import endpoint_token, gid_of
 from aionode.engine.wire._replaced_texts import REPLACED_TEXTS
-from aionode.engine.wire.typehash import type_hash
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
-from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.graph import Graph
 from aionode.logging import get_logger
-from aionode.message import type_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -50,11 +46,8 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.engine.observation import NodeReport, ProcessReport
-    from aionode.qos import QoSProfile
 
-__all__ = ["Context", "openings"]
-
-RegisteredT = TypeVar("RegisteredT", bound=Registration)
+__all__ = ["Context", "obeying", "openings"]
 
 TRANSPORT_VARIABLE = "AIONODE_TRANSPORT"
 
@@ -248,7 +241,7 @@ class Context:
         self._usage: Usage | None = None  # of arguments set for this context only
         # From construction to destruction, each with what to call in a forked child.
         self._nodes: dict[ContextNode, Callable[[], None]] = {}
-        self._next_id = 0  # of the next node or endpoint
+        self._ids = itertools.count()  # of its nodes and endpoints
         # The tasks of running nodes and `async with` blocks; without any, the transports close.
         self._users: list[asyncio.Task[Any] | None] = []
         self._shut_down = False  # set by `shutdown`, and never reset
@@ -330,16 +323,6 @@ class Context:
             yield
         finally:
             cls._default = before
-
-    @classmethod
-    @contextlib.contextmanager
-    def _obeying(cls, arguments: Arguments) -> Iterator[None]:
-        """Apply `arguments` to the nodes of every context within the ``with`` block."""
-        before, cls._command_line = cls._command_line, Usage(arguments)
-        try:
-            yield
-        finally:
-            cls._command_line = before
 
     @property
     def arguments(self) -> Arguments:
@@ -589,25 +572,6 @@ class Context:
 
         return end
 
-    def _add_node(self, node: ContextNode, abandon: Callable[[], None]) -> None:
-        """Add `node`, which `shutdown` destroys.
-
-        Args:
-            node: The node.
-            abandon: Called in a forked child; marks the node destroyed without closing anything.
-
-        Raises:
-            EntityDestroyedError: the context was shut down.
-            ForkedProcessError: it belongs to the parent of this forked process.
-        """
-        self._refuse_if_shut_down()
-        self._refuse_if_inherited()
-        self._nodes[node] = abandon
-
-    def _remove_node(self, node: ContextNode) -> None:
-        """Forget `node`."""
-        self._nodes.pop(node, None)
-
     @property
     def _current_usage(self) -> Usage:
         """Records which of the current arguments the nodes have used."""
@@ -632,42 +596,15 @@ class Context:
         """The transports in the order in which they open; the local one is first."""
         return self._transports
 
-    def _new_id(self) -> int:
-        """Return an id that no other node or endpoint of this context has."""
-        self._next_id += 1
-        return self._next_id - 1
 
-    def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
-        """Register something with every transport, or with none if one refuses."""
-        registrations: list[RegisteredT] = []
-        try:
-            registrations.extend(map(register, self.transports))
-        except BaseException:
-            for registration in registrations:
-                registration.close()
-            raise
-        return registrations
-
-    def _describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Return the graph entry of a new node."""
-        return NodeInfo(self.participant, self._new_id(), name, namespace, enclave)
-
-    def _describe_endpoint(
-        self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: Any, qos: QoSProfile
-    ) -> EndpointInfo:
-        """Return the graph entry of a new endpoint."""
-        endpoint = EndpointInfo(
-            kind=kind,
-            node=node,
-            endpoint_id=self._new_id(),
-            name=name,
-            type_name=type_name(ros_type),
-            type_hash=NO_TYPE_HASH if self.ros_distro == "humble" else type_hash(ros_type),
-            qos=qos,
-            gid=b"",
-        )
-        gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
-        return structs.replace(endpoint, gid=gid)
+@contextlib.contextmanager
+def obeying(arguments: Arguments) -> Iterator[None]:
+    """Apply `arguments` to the nodes of every context within the ``with`` block."""
+    before, Context._command_line = Context._command_line, Usage(arguments)
+    try:
+        yield
+    finally:
+        Context._command_line = before
 
 
 def openings() -> int:

@@ -36,6 +36,7 @@ from aionode.engine.graph_queries import (
     actions_among,
     topic_endpoint_info,
 )
+from aionode.engine.membership import affinity_of, describe_endpoint
 from aionode.errors import InterfaceNotFoundError, brief, shortened
 from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.interfaces import fitting
@@ -85,7 +86,7 @@ def in_context_thread(constructor: ConstructorT) -> ConstructorT:
 
     @wraps(constructor)
     def construct(self: Node, *args: Any, **options: Any) -> None:
-        affinity = (options.get("context") or Context.default())._affinity
+        affinity = affinity_of(options.get("context") or Context.default())
         if affinity.is_other_thread():
             affinity.wait_for(partial(constructor, self, *args, **options))
         else:
@@ -446,13 +447,9 @@ class Node(ParameterMethods, GraphQueries):
         publisher = Publisher(
             setup,
             msg_type,
-            lambda: self.context._register(
-                lambda transport: transport.create_writer(setup.endpoint, msg_type)
-            ),
-            self.context.time_base,
             event_callbacks,
         )
-        return add_with_events(core_of(self), publisher)
+        return core_of(self).add_with_events(publisher)
 
     @overload
     def create_subscription(
@@ -560,11 +557,11 @@ class Node(ParameterMethods, GraphQueries):
             setup,
             msg_type,
             callback,
-            self.context.time_base,
             concurrent=concurrent,
             raw=raw,
             on_error=on_error,
             offload=offload,
+            content_filter_options=content_filter_options,
             event_callbacks=event_callbacks,
             silence=Silence.given(
                 on_silence,
@@ -574,12 +571,7 @@ class Node(ParameterMethods, GraphQueries):
                 has_callback=callback is not None,
             ),
         )
-        if content_filter_options is not None:  # before messages can arrive
-            subscription.set_content_filter(
-                content_filter_options.filter_expression,
-                content_filter_options.expression_parameters,
-            )
-        return add_subscription(core_of(self), subscription)
+        return core_of(self).add_with_events(subscription)
 
     @in_loop_thread
     def create_service(
@@ -626,11 +618,6 @@ class Node(ParameterMethods, GraphQueries):
             on_error=on_error,
             offload=offload,
         )
-        service._add_registrations(
-            self.context._register(
-                lambda transport: transport.create_server(setup.endpoint, srv_type, service._serve)
-            )
-        )
         return core_of(self).add(service)
 
     @in_loop_thread
@@ -658,15 +645,10 @@ class Node(ParameterMethods, GraphQueries):
         core_of(self).refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
         setup = endpoint_setup(self, EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
-        requesters = self.context._register(
-            lambda transport: transport.create_requester(setup.endpoint, srv_type)
-        )
         return core_of(self).add(
             Client(
                 setup,
                 srv_type,
-                requesters,
-                self.context.time_base,
                 self.create_publisher,
             )
         )
@@ -1008,20 +990,8 @@ def endpoint_setup(
         )
         profile = declare_qos_overrides(node, full_name, entity, profile, overriding)
     context = core.context
-    others = [e.qos for e in context.graph.endpoints(kind.opposite, name=full_name)]
-    if kind is EndpointKind.PUBLISHER:
-        profile = qos.best_available_for_publisher(profile, others)
-    elif kind is EndpointKind.SUBSCRIPTION:
-        profile = qos.best_available_for_subscription(profile, others)
-    endpoint = context._describe_endpoint(kind, core.info, full_name, ros_type, profile.resolved())
-    return EndpointSetup(
-        endpoint,
-        context.graph,
-        core.callbacks,
-        core.affinity,
-        context.network.queue_bytes,
-        context.causes,
-    )
+    endpoint = describe_endpoint(context, kind, core.info, full_name, ros_type, profile)
+    return EndpointSetup(endpoint, context, core.callbacks)
 
 
 def timer_causes(core: NodeCore, period_sec: float) -> tuple[CauseLog, Party] | None:
@@ -1060,14 +1030,13 @@ def direct_subscription(
         endpoint_setup(node, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile),
         msg_type,
         None,
-        core.context.time_base,
         concurrent=False,
         raw=True,
         on_error="raise",
         offload=False,
         take=take,
     )
-    return add_subscription(core, subscription)
+    return core.add_with_events(subscription)
 
 
 def parts_subscription(
@@ -1092,35 +1061,13 @@ def parts_subscription(
         endpoint_setup(node, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile),
         msg_type,
         callback,
-        core.context.time_base,
         concurrent=False,
         raw="parts",
         on_error="log",
         offload=False,
         event_callbacks=event_callbacks,
     )
-    return add_subscription(core, subscription)
-
-
-def add_subscription(core: NodeCore, subscription: Subscription[T]) -> Subscription[T]:
-    """Announce a subscription to the transports, and add it to its node."""
-    subscription._add_registrations(
-        core.context._register(
-            lambda transport: transport.create_reader(
-                subscription._endpoint, subscription.msg_type, subscription._reader
-            )
-        )
-    )
-    return add_with_events(core, subscription)
-
-
-def add_with_events(core: NodeCore, endpoint: TopicT) -> TopicT:
-    """Add a publisher or subscription to a node, with the task that calls its event callbacks."""
-    core.add(endpoint)
-    monitor = endpoint._monitor
-    if monitor is not None and monitor.handler is not None:
-        core.add(monitor.handler)
-    return endpoint
+    return core.add_with_events(subscription)
 
 
 def clock_for_timer(core: NodeCore, given: object) -> Clock:

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import yaml
 from msgspec.structs import replace
 
-from aionode.arguments import Usage, parse_arguments
+from aionode.arguments import parse_arguments
 from aionode.endpoints.core.end_record import failure_line
 from aionode.engine.context import Context
+from aionode.engine.membership import with_arguments
 from aionode.node import Node
 from aionode.runner import failure_text
 from aionode.system._member import Member
@@ -86,19 +87,13 @@ class NodeMember(Member):
         """Create a node, with this member's arguments in addition to the shared ones."""
         context, own = self._context, self._arguments
         shared = context.arguments
-        before = context._usage
-        context._usage = Usage(
-            replace(
-                shared,
-                remap_rules=own.remap_rules + shared.remap_rules,
-                parameter_rules=shared.parameter_rules + own.parameter_rules,
-            )
+        merged = replace(
+            shared,
+            remap_rules=own.remap_rules + shared.remap_rules,
+            parameter_rules=shared.parameter_rules + own.parameter_rules,
         )
-        try:
-            with Context.as_default(context):
-                node = self._make_node()
-        finally:
-            context._usage = before
+        with with_arguments(context, merged), Context.as_default(context):
+            node = self._make_node()
         if not isinstance(node, Node):
             raise TypeError(f"{self.name}: {self._make_node!r} returned {node!r}, not a node")
         return node

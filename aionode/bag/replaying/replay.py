@@ -21,6 +21,7 @@ from aionode.bag.replaying.outputs import Outputs, Tap
 from aionode.clock import Time
 from aionode.engine.bare_node import BareNode
 from aionode.engine.context import Context
+from aionode.engine.membership import nodes_of
 from aionode.errors import (
     BagError,
     DecodeError,
@@ -147,7 +148,7 @@ class Replay:
         recorded = [absolute(name) for name in record]
         publish = self._publishers(self._chosen(recorded, topics))
         with Tap(self._player, recorded) as tap, MachineUse():
-            for node in list(self.context._nodes):
+            for node in nodes_of(self.context):
                 if isinstance(node, Node) and not (node.is_running or node.destroyed):
                     self._tasks.create_task(node.run())
             stepped = self._stepped
@@ -252,7 +253,7 @@ def publishing(publisher: BarePublisher, clock: ManualClock) -> Callable[[Record
     """Return a function that publishes a record if anything listens."""
 
     def publish(record: Record) -> None:
-        if not any(writer.active for writer in publisher._writers):
+        if not publisher.is_heard():
             return  # no need to decode the message
         try:
             message = record.message

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 from aionode.endpoints.core.entity import EndStage, Entity
+from aionode.engine.membership import affinity_of
 from aionode.engine.reports.limits import heavy_text
 
 if TYPE_CHECKING:
@@ -14,9 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from aionode.endpoints.core.callback_runner import Callbacks
-    from aionode.engine.causes import CauseLog
-    from aionode.engine.loop_affinity import LoopAffinity
-    from aionode.graph import EndpointInfo, Graph
+    from aionode.engine.context import Context
+    from aionode.graph import EndpointInfo
 
 __all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
@@ -26,25 +26,20 @@ class EndpointSetup(Struct, frozen=True):
 
     Attributes:
         endpoint: The endpoint's entry in the graph.
-        graph: The graph.
+        context: The node's context.
         callbacks: How the node runs callbacks.
-        affinity: The event loop that the node runs in.
-        queue_bytes: How many bytes of messages or requests may wait for its callback.
-        causes: Keeps what caused what it sends; None if that is not kept.
     """
 
     endpoint: EndpointInfo
-    graph: Graph
+    context: Context
     callbacks: Callbacks
-    affinity: LoopAffinity
-    queue_bytes: int
-    causes: CauseLog | None
 
 
 def report_heavy(setup: EndpointSetup, what: str) -> None:
     """Log that messages or requests were dropped or refused for taking too many bytes."""
     what = f"{what} (logged once; see stats.dropped)"
-    setup.callbacks.logger.warning(heavy_text(setup.endpoint.name, setup.queue_bytes, what))
+    limit = setup.context.network.queue_bytes
+    setup.callbacks.logger.warning(heavy_text(setup.endpoint.name, limit, what))
 
 
 class Endpoint(Entity):
@@ -63,9 +58,9 @@ class Endpoint(Entity):
         self, subject: str, setup: EndpointSetup, stage: EndStage = EndStage.CALLBACKS
     ) -> None:
         super().__init__(subject, stage)
-        self._endpoint, self._graph = setup.endpoint, setup.graph
-        self._callbacks, self._affinity = setup.callbacks, setup.affinity
-        self._causes = setup.causes
+        self._endpoint, self._graph = setup.endpoint, setup.context.graph
+        self._callbacks, self._affinity = setup.callbacks, affinity_of(setup.context)
+        self._causes = setup.context.causes
         self.qos_profile = self._endpoint.qos
         self._unwatch: list[Callable[[], None]] = []
         self._unreported: AbstractSet[str] = frozenset()

@@ -17,6 +17,14 @@ from aionode.endpoints.core.endpoint import Endpoint
 from aionode.endpoints.core.entity import EndStage
 from aionode.endpoints.core.node_tasks import NodeTasks
 from aionode.endpoints.core.shutdown import Shutdown
+from aionode.engine.membership import (
+    acquire,
+    affinity_of,
+    describe_node,
+    join,
+    release,
+    usage_of,
+)
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
 from aionode.parameter import Parameter, ParameterStore
@@ -26,13 +34,15 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.endpoints.core.entity import Entity
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.subscription import Subscription
     from aionode.engine.context import Context, ContextNode
     from aionode.engine.observation import NodeReport
-    from aionode.engine.transport.base import Registration
 
 __all__ = ["HasCore", "NodeCore", "core_of", "in_loop_thread", "in_thread_of_node", "is_named"]
 
 EntityT = TypeVar("EntityT", bound="Entity")
+TopicT = TypeVar("TopicT", "Publisher[Any]", "Subscription[Any]")
 MethodT = TypeVar("MethodT", bound="Callable[..., Any]")
 
 
@@ -90,7 +100,7 @@ class NodeCore:
         constructed: Whether the built-in services exist, so that further entities are the
             program's.
         warned_about: Kinds of third arguments of timers that were already logged.
-        at_end: Called when the node leaves the graph.
+        at_end: Called when all entities are destroyed, newest first.
     """
 
     def __init__(
@@ -119,7 +129,7 @@ class NodeCore:
         self._rules = own.remap_rules + shared.remap_rules
         self.usages = [
             Usage(own),
-            context._current_usage if use_global_arguments else Usage(shared),
+            usage_of(context) if use_global_arguments else Usage(shared),
         ]
         for usage in self.usages:
             usage.note_node(node_name)
@@ -146,12 +156,11 @@ class NodeCore:
             budget_ns=round(callback_budget_ms * 1e6) if context.seed is None else sys.maxsize,
             slice_ns=context.time_base.slice_ns,
         )
-        self.affinity = context._affinity
+        self.affinity = affinity_of(context)
         self.shutdown = Shutdown(self.entities, self.callbacks, self._leave)
         self.at_end: list[Callable[[], None]] = []
-        self._registrations: list[Registration] = []  # the node's own, one per transport
-        self.info = context._describe_node(
-            node_name, namespace, enclave=own.enclave or shared.enclave or "/"
+        self.info = describe_node(
+            context, node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
         self.parameters = ParameterStore(
             full_name,
@@ -177,11 +186,7 @@ class NodeCore:
             EntityDestroyedError: the context was shut down.
             ForkedProcessError: the context belongs to the parent process.
         """
-        self.context._add_node(self._node, self._abandon)
-        self._registrations = self.context._register(
-            lambda transport: transport.create_node(self.info)
-        )
-        self.context.graph.add_node(self.info)
+        self.at_end.append(join(self.context, self._node, self.info, self._abandon))
         self.at_end.append(self.context.add_reporter(self, self._report))
 
     def _report(self) -> NodeReport:
@@ -206,7 +211,7 @@ class NodeCore:
             raise RuntimeError(f"{self.subject} is already running")
         self.running = True
         try:
-            await self.context._acquire()
+            await acquire(self.context)
         except BaseException:
             self.running = False
             raise
@@ -250,7 +255,7 @@ class NodeCore:
                     raise
             finally:
                 self.running = False
-                await to_the_end(self.context._release(asyncio.current_task()), raising)
+                await to_the_end(release(self.context, asyncio.current_task()), raising)
 
     def destroy(self) -> None:
         """End the node: at once if it is not running; otherwise `finish` waits for the end."""
@@ -270,13 +275,9 @@ class NodeCore:
 
     def _leave(self) -> None:
         """Release what belongs to the node itself, after all entities are destroyed."""
-        for action in self.at_end:
+        for action in reversed(self.at_end):
             action()
         self.clock.destroy()
-        for registration in self._registrations:
-            registration.close()
-        self.context.graph.remove_node(self.info)
-        self.context._remove_node(self._node)
         if not self.running:
             self.record.note(NodeEnd("destroyed"))
 
@@ -326,6 +327,14 @@ class NodeCore:
         if self._group is not None:
             self._start_entity(entity, self._group)
         return entity
+
+    def add_with_events(self, endpoint: TopicT) -> TopicT:
+        """Own a publisher or subscription, and the task that calls its event callbacks."""
+        self.add(endpoint)
+        monitor = endpoint._monitor
+        if monitor is not None and monitor.handler is not None:
+            self.add(monitor.handler)
+        return endpoint
 
     def _start_entity(self, entity: Entity, group: asyncio.TaskGroup) -> None:
         """Start `entity`; the shutdown of the node waits for those that run callbacks."""
