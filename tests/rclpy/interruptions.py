@@ -29,7 +29,7 @@ from rclpy.signals import SignalHandlerOptions
 
 PATIENCE_S = 10.0
 PUBLISHED = 10_000
-MANY_PLACES = 25
+MANY_PLACES = 10
 OWN_CODE = ("aionode/ros_packages", "aionode/_process/lendable_loop", "aionode/engine/")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ PROGRAM = Path(__file__).parent / "interruptions.py"
 PATIENCE_S = 60.0
 """Longest time for a program, in seconds; it takes two."""
 
-WELL = dict.fromkeys(("publish", "spin", "ask"), "well at 25 places")
+WELL = dict.fromkeys(("publish", "spin", "ask"), "well at 10 places")
 
 pytestmark = [
     pytest.mark.timeout(90),
@@ -63,6 +64,7 @@ def test_a_handler_that_interrupts_the_look_at_handlers_may_wait(
         uninterrupted.refuse_to_wait()
         return False
 
+    monkeypatch.setattr(uninterrupted.Handlers, "harmless", None)
     monkeypatch.setattr(uninterrupted, "handlers_are_harmless", interrupted_look)
 
     assert not uninterrupted.begin()
@@ -88,3 +90,18 @@ def test_a_handler_that_puts_itself_off_raises_at_any_place() -> None:
 def test_a_finalizer_communicates_at_any_place(does: str) -> None:
     """The garbage collector calls it anywhere; where it cannot wait, it gets an error."""
     assert run(f"finalizer_{does}") == WELL
+
+
+def test_a_handler_that_is_installed_later_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing looks at the handlers before each message: a change of one is noted."""
+    ours = {each for each in map(signal.getsignal, signal.valid_signals()) if callable(each)}
+    monkeypatch.setattr(uninterrupted, "own_handlers", ours)
+    monkeypatch.setattr(uninterrupted.Handlers, "harmless", None)
+    assert uninterrupted.begin()
+    uninterrupted.end()
+
+    before = signal.signal(signal.SIGUSR1, lambda *_: None)
+    try:
+        assert not uninterrupted.begin()
+    finally:
+        signal.signal(signal.SIGUSR1, before)

@@ -12,11 +12,9 @@ message to the context's thread, and one that waits for an answer gets an error.
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # it has no stub
 import os
 import signal
-
-# `signal.getsignal` creates an enum for each answer, which takes ten times as long.
-from _signal import getsignal  # type: ignore[import-not-found]  # it has no stub
 from threading import current_thread, get_ident, local, main_thread
 from typing import TYPE_CHECKING, Any
 
@@ -56,15 +54,33 @@ postponed: list[Callable[[], object]] = []
 
 
 class Handlers:
-    """The installed handlers at the last check, whether all of them are harmless, and their thread.
+    """What is known of the installed handlers.
 
     Attributes:
+        harmless: Whether all of them are; None after a change, until somebody has looked.
         thread: The main thread, in which Python calls them.
     """
 
-    seen: list[Any] | None = None
-    harmless = False
+    harmless: bool | None = None
     thread = main_thread().ident
+
+
+def note_change(install: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that installs a handler like `install`, and notes that."""
+
+    def signal(*args: Any) -> Any:
+        try:
+            Handlers.harmless = False  # for a handler that interrupts this
+            return install(*args)
+        finally:
+            Handlers.harmless = None
+
+    return signal
+
+
+# `signal.signal`, and with it everything that installs a handler, calls this one. Looking at all
+# handlers before each piece of work would take a twentieth of a message's time.
+_signal.signal = note_change(_signal.signal)
 
 
 def begin() -> bool:
@@ -81,7 +97,12 @@ def begin() -> bool:
     current.active = True
     alone = False
     try:
-        alone = get_ident() != Handlers.thread or handlers_are_harmless()
+        harmless = Handlers.harmless
+        alone = (
+            harmless
+            or get_ident() != Handlers.thread
+            or (harmless is None and handlers_are_harmless())
+        )
     finally:
         # A handler of the program that interrupts the check may wait: the work does not begin then.
         current.begun = alone
@@ -101,14 +122,11 @@ def end() -> None:
 
 
 def handlers_are_harmless() -> bool:
-    """Return whether all installed Python handlers are ones that call `postpone`."""
-    installed = [*map(getsignal, NUMBERS)]
-    if installed != Handlers.seen:
-        Handlers.harmless = all(
-            handler in own_handlers for handler in installed if callable(handler)
-        )
-        Handlers.seen = installed
-    return Handlers.harmless
+    """Look whether all installed Python handlers are ones that call `postpone`; note the answer."""
+    installed = map(_signal.getsignal, NUMBERS)  # `signal.getsignal` makes enums: ten times as long
+    harmless = all(handler in own_handlers for handler in installed if callable(handler))
+    Handlers.harmless = harmless
+    return harmless
 
 
 def note_main_thread() -> None:
