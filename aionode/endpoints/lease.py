@@ -73,8 +73,10 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
     def _let_go(self) -> None:
         """Allow `publish` again."""
 
-    def _publish_leased(self, msg: LeasedT_contra | bytes | bytearray | memoryview) -> None:
-        """Publish a command."""
+    def _publish_leased(
+        self, msg: LeasedT_contra | bytes | bytearray | memoryview, source_ns: int
+    ) -> None:
+        """Publish a command, stamped with a time."""
 
     def _number_stop(self, step: int) -> tuple[int, int]:
         """Return the sequence number of the stop, `step` after the last one, and its time."""
@@ -306,19 +308,21 @@ class CommandLease(Generic[MsgT]):
             self._affinity.wait_for(self.publish, msg, stop)
             return
         with self._lock:
+            # Both are from before the time to live is checked. So a command of a holder that is
+            # frozen in the middle is as old as the check that allowed it: it does not renew the
+            # lease, and wheels that have stopped meanwhile ignore it.
+            at_ns, source_ns = self._time_base.steady_ns(), self._time_base.system_ns()
             self._look()
             if self._refusal is not None or self._state is not State.OPEN:
                 raise self._refused()
             if stop is None and self._message is None:
                 raise ValueError(f"{self!r}: it has no stop yet; pass stop= with the first command")
             self._is_publishing = True
-            # The sign of life of a holder that is frozen in the middle is as old as its command.
-            at_ns = self._time_base.steady_ns()
             before = self._message, self._senders
             try:
                 if stop is not None:
                     self.prepare(self._publisher._stop_of(stop))
-                self._publisher._publish_leased(msg)
+                self._publisher._publish_leased(msg, source_ns)
             except BaseException:
                 self._message, self._senders = before
                 raise

@@ -287,18 +287,19 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._lease = None
         self._writers = self._ready_writers
 
-    def _publish_leased(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
-        """Publish a command of the lease."""
-        held, self._writers = self._writers, self._ready_writers
+    def _publish_leased(self, msg: MsgT | bytes | bytearray | memoryview, source_ns: int) -> None:
+        """Publish a command of the lease, stamped with a time."""
+        held, now_ns = self._writers, self._now_ns
+        self._writers, self._now_ns = self._ready_writers, lambda: source_ns
         try:
             self.publish(msg)
         finally:
-            self._writers = held
+            self._writers, self._now_ns = held, now_ns
 
     def _number_stop(self, step: int) -> tuple[int, int]:
         """Return the sequence number of the stop, `step` after the last one, and its time."""
         self.stats.published += step
-        return self.stats.published, self._now_ns()
+        return self.stats.published, self._time_base.system_ns()  # also while a command is sent
 
     def _end_lease(self, refusal: Callable[[], Exception]) -> None:
         """Send the stop of an open lease; its `publish` then raises what `refusal` returns."""

@@ -7,12 +7,13 @@ import gc
 import math
 import threading
 from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import suppress
 from typing import Any, TypeVar
 from weakref import WeakSet
 
 import pytest
 
-from aionode import CommandLease, Context, Node, Publisher
+from aionode import CommandLease, Context, MessageInfo, Node, Publisher
 from aionode.clock import Clock, ROSClock, Time
 from aionode.endpoints.lease import send_stops
 from aionode.engine.transport.local import LocalTransport
@@ -198,37 +199,60 @@ async def test_a_command_that_comes_too_late_is_not_sent(robot: Robot) -> None:
 
 
 class FreezingClock(ManualClock):
-    """Time in which a process is frozen once, in the middle of reading the system time.
+    """Time in which a process is frozen once, right after it reads the time.
 
     Attributes:
-        freezes_s: For how long, at the next reading.
+        frozen_s: For how long.
+        readings: How many readings there are until then; none is counted at 0.
     """
 
-    freezes_s = 0.0
+    frozen_s = 5.0
+    readings = 0
 
     def system_ns(self) -> int:
-        """Return the time before the freeze."""
-        now_ns, seconds, self.freezes_s = super().system_ns(), self.freezes_s, 0.0
-        self.stall(seconds)
+        """Return the time, and perhaps freeze."""
+        return self._frozen_after(super().system_ns())
+
+    def steady_ns(self) -> int:
+        """Return the time, and perhaps freeze."""
+        return self._frozen_after(super().steady_ns())
+
+    def _frozen_after(self, now_ns: int) -> int:
+        if self.readings:
+            self.readings -= 1
+            if not self.readings:
+                self.stall(self.frozen_s)
         return now_ns
 
 
-async def test_a_holder_that_is_frozen_while_it_publishes_loses_the_lease() -> None:
-    """Its command is from before, and so is its sign of life: no further command may follow."""
+@pytest.mark.parametrize("readings", [1, 2, 3, 4])
+async def test_a_holder_that_is_frozen_while_it_publishes_loses_the_lease(readings: int) -> None:
+    """A command in the middle is stamped as from before, so that wheels that stopped ignore it."""
     clock = FreezingClock()
+    stamps: list[int] = []
+
+    def turn(msg: Int8, info: MessageInfo) -> None:
+        if msg.data:
+            stamps.append(info["source_timestamp"])
+
     async with local_context(clock=clock) as context, Node("commander", context=context) as node:
-        robot = Robot(clock, context, node)
-        async with robot.wheels:
+        node.create_subscription(Int8, "speed", turn, 100)
+        speed = node.create_publisher(Int8, "speed", 100)
 
-            async def body(lease: CommandLease[Int8]) -> None:
-                clock.freezes_s = 5.0
-                lease.publish(Int8(data=1))  # which notes the time of the message
-                assert not lease.held
+        async def body(lease: CommandLease[Int8]) -> None:
+            lease.publish(Int8(data=1))
+            clock.readings = readings
+            with suppress(LeaseExpiredError):
                 lease.publish(Int8(data=2))
+            clock.readings = 0
+            assert not lease.held
+            lease.publish(Int8(data=3))
 
-            with pytest.raises(LeaseExpiredError):
-                await hold(robot.speed, body)
-            assert await robot.took() == [1, 0]
+        began_ns = clock.system_ns()
+        with pytest.raises(LeaseExpiredError):
+            await hold(speed, body)
+        await settle()
+        assert set(stamps) == {began_ns}
 
 
 async def test_a_holder_that_swallows_the_refusal_is_cancelled(robot: Robot) -> None:
