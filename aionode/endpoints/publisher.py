@@ -336,6 +336,10 @@ class Publisher(Endpoint, Generic[MsgT]):
                 self._monitor.close()
         return self._monitor.events()
 
+    def _is_drained(self) -> bool:
+        """Return whether `drain` would not have to wait."""
+        return all(writer.is_drained() for writer in self._ready_writers)
+
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL reader has room and nothing is left to send.
 

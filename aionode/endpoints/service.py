@@ -128,9 +128,8 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def _run(self) -> Coroutine[Any, Any, None]:
         """Return the coroutine that answers requests."""
-        return consume(
-            self._message_queue, self._handle, self._concurrent, inline=self._runner.is_sync
-        )
+        inline = self._runner.is_sync or self._concurrent is not False
+        return consume(self._message_queue, self._handle, self._concurrent, inline=inline)
 
     def _handle(self, entered_ns: int, request: Request) -> Coroutine[Any, Any, None] | None:
         if request.cancelled:

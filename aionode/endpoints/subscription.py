@@ -337,7 +337,9 @@ class Subscription(Endpoint, Generic[ItemT]):
         if self._silence_watch is not None:
             self._silence_watch.start()
             return self._silence_watch.consume(receive, self._concurrent)
-        return consume(self._reader, receive, self._concurrent, inline=self._runner.is_sync)
+        self._reader.is_concurrent = self._concurrent is not False
+        inline = self._runner.is_sync and not self._reader.is_concurrent
+        return consume(self._reader, receive, self._concurrent, inline=inline)
 
     def _close(self) -> None:
         """Withdraw the subscription; without a callback, unread messages can still be read."""

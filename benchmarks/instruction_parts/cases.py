@@ -78,9 +78,6 @@ class Silent(Writer, Requester):
         """Always have room."""
         return True
 
-    async def drain(self) -> None:
-        """Have nothing to wait for."""
-
     def close(self) -> None:
         """Withdraw nothing."""
 

@@ -43,6 +43,9 @@ class LifeSigns:
         self._time_base = time_base
         self._goals: dict[bytes, Exchange | None] = {}  # goal id to last sign
         self._interval_ns = 0
+        # The graph's `changes` when the interval was computed that servers want, and that interval.
+        self._asked_at = -1
+        self._limit_ns = 0
         self._alarm: Alarm | None = None
         self._farewells: set[asyncio.Future[Any]] = set()
 
@@ -100,10 +103,13 @@ class LifeSigns:
 
     def _announced_ns(self) -> int:
         """Return the interval between signs that the servers want, in nanoseconds; 0 for none."""
-        servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
-        lifespans = [server.qos.lifespan for server in servers]
-        limits_ns = [lifespan.nanoseconds for lifespan in lifespans if not is_unlimited(lifespan)]
-        return min(limits_ns) // SIGNS_IN_TIME if limits_ns else 0
+        if self._asked_at != self._graph.changes:  # asked for each goal
+            self._asked_at = self._graph.changes
+            servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
+            lifespans = [server.qos.lifespan for server in servers]
+            limits_ns = [each.nanoseconds for each in lifespans if not is_unlimited(each)]
+            self._limit_ns = min(limits_ns) // SIGNS_IN_TIME if limits_ns else 0
+        return self._limit_ns
 
     def _beat(self) -> None:
         """Send a sign for each goal, and schedule the next ones."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
-from aionode._process.concurrency import checkpoint
+from aionode._process.later import DelayedCalls
 from aionode.endpoints.actions._cancel_request import CancelRequest, is_rejected, warner
 from aionode.endpoints.actions._life_signs import LifeSigns
 from aionode.endpoints.actions.client_goal import ActionResult, ClientGoalHandle
@@ -125,6 +126,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._node_name = core_of(node).info.fully_qualified_name
         # Goals by id, from sending until their end.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
+        # Accepted goals, and again when their results have arrived: see `_follow`.
         self._accepted: MessageQueue[Any] = MessageQueue(
             UNLIMITED, CallbackStats(), keep_all=True, slice_ns=node.context.time_base.slice_ns
         )
@@ -133,6 +135,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those in progress
         self._expect_at_end = core_of(node).shutdown.expect
+        self._delayed = DelayedCalls()  # the ends of goals' feedback
         self._sends_for_others = False  # such as clients of a gateway; see `lost_id`
         self._tell_goes_on = warner(node.get_logger(), self._subject)
 
@@ -379,7 +382,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         handle.stamp = response.stamp
         handle._update_status(GoalStatus.ACCEPTED)
         self._signs.add(handle._key)
-        self._accepted.put(handle)
+        self._accepted.hand_over(handle)
         return handle
 
     def _note_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
@@ -494,7 +497,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         callbacks have ended. Until then this task continues, as for a destroyed node.
         """
         try:
-            await consume(self._accepted, self._follow, concurrent=True)
+            await consume(self._accepted, self._follow, concurrent=True, inline=True)
         except asyncio.CancelledError:
             if self.destroyed or self._node_tasks is None or self._node_tasks.error is None:
                 raise
@@ -505,50 +508,86 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         for goal in self._goals.values():
             if goal.accepted:
                 self._accepted.put(goal)
-        await consume(self._accepted, self._follow, concurrent=True)
+        await consume(self._accepted, self._follow, concurrent=True, inline=True)
 
     def _follow(
         self, _entered_ns: int, goal: ClientGoalHandle[ResultT, FeedbackT]
-    ) -> Coroutine[Any, Any, None]:
-        return self._until_end(goal)
+    ) -> Coroutine[Any, Any, None] | None:
+        """Ask for the result of an accepted goal, or take it; return the rest to await, if any.
 
-    async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        No task waits for the result: its arrival queues the goal again.
+        """
+        asking = goal._asking
         if self.destroyed:
-            return
-        # If this task is cancelled, `_run` or `_close` takes care of the goal.
+            return None
+        if asking is None:
+            if not self._get_result.service_is_ready():
+                return self._ask_later(goal)
+            self._ask_for_result(goal)
+            return None
+        if not asking.answer.done():
+            return None  # `_run` has queued all goals again
+        self._get_result._note_answer(asking)
+        error = asking.answer.exception()
+        asking.cancel()  # already answered
+        if error is not None:
+            self._lose(goal, error)
+            return None
+        goal._brought_by = CAUSES.get()[-1:]
+        response = asking.answer.result()
+        status = GoalStatus(response.status)
+        if self._may_have_reason(goal, status):
+            return self._end_with_reason(goal, status, response.result)
+        self._end_goal(goal, ActionResult(status, response.result))
+        return None
+
+    async def _ask_later(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         try:
             await self._until_askable()
-            self._signs.add(goal._key)  # perhaps the service was discovered late
-            response = await self._ask(goal.goal_id)
-            goal._brought_by = CAUSES.get()[-1:]
-            status = GoalStatus(response.status)
-            text = await self._reason(goal, status)
-        except ServiceUnavailableError:
-            problem = "the server went away before it ended"
-            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
-        except ServiceError as error:
-            problem = f"the server could not tell its result ({error})"
-            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
+        except ServiceUnavailableError as error:
+            self._lose(goal, error)
         else:
-            goal._end(ActionResult(status, response.result, text))
-            if status is not GoalStatus.UNKNOWN:
-                await self._hear_out()
-            goal._end_feedback()
+            self._ask_for_result(goal)
+
+    def _ask_for_result(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        self._signs.add(goal._key)  # perhaps the service was discovered late
+        goal._asking = self._get_result._begin(self._result_request(goal.goal_id))
+        goal._asking.answer.add_done_callback(lambda _: self._accepted.hand_over(goal))
+
+    def _result_request(self, goal_id: Any) -> Any:
+        return self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
+
+    def _lose(self, goal: ClientGoalHandle[ResultT, FeedbackT], error: BaseException) -> None:
+        problem = "the server went away before it ended"
+        if not isinstance(error, ServiceUnavailableError):
+            problem = f"the server could not tell its result ({error})"
+        goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
         self._forget(goal)
 
-    async def _hear_out(self) -> None:
-        """Wait for feedback that the result has overtaken."""
-        if self._is_remote():
-            over = asyncio.Event()  # not a future, which cannot be set once this is cancelled
-            alarm = asyncio.get_running_loop().call_later(LAST_FEEDBACK_S, over.set)
-            try:
-                await over.wait()
-            finally:
-                alarm.cancel()
-        for _ in range(TURNS_FOR_FEEDBACK):
-            if not self._feedback._reader.waiting:
-                break
-            await checkpoint()
+    async def _end_with_reason(
+        self, goal: ClientGoalHandle[ResultT, FeedbackT], status: GoalStatus, result: ResultT
+    ) -> None:
+        self._end_goal(goal, ActionResult(status, result, await self._told(goal)))
+
+    def _end_goal(
+        self, goal: ClientGoalHandle[ResultT, FeedbackT], outcome: ActionResult[ResultT]
+    ) -> None:
+        """Set the outcome of a goal, and expect the feedback that the result has overtaken."""
+        goal._end(outcome)
+        if outcome.status is not GoalStatus.UNKNOWN and self._is_remote():
+            self._delayed.add(LAST_FEEDBACK_S, partial(self._hear_out, goal))
+        else:
+            self._hear_out(goal)
+
+    def _hear_out(
+        self, goal: ClientGoalHandle[ResultT, FeedbackT], turns: int = TURNS_FOR_FEEDBACK
+    ) -> None:
+        """End the feedback of a goal once what has arrived was handled."""
+        if turns and self._feedback._reader.waiting:
+            asyncio.get_running_loop().call_soon(self._hear_out, goal, turns - 1)
+            return
+        goal._end_feedback()
+        self._forget(goal)
 
     def _is_remote(self) -> bool:
         """Return whether a server of another process may have executed the goal."""
@@ -566,23 +605,20 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 raise ServiceUnavailableError(self._get_result.srv_name)
             await self._change()
 
-    async def _ask(self, goal_id: Any, timeout_sec: float | None = None) -> Any:
-        request = self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
-        return await self._get_result.call(request, timeout_sec)
-
-    async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT], status: GoalStatus) -> str:
-        """Return why the server ended `goal`, if it runs aionode and knows, else ""."""
+    def _may_have_reason(
+        self, goal: ClientGoalHandle[ResultT, FeedbackT], status: GoalStatus
+    ) -> bool:
+        """Return whether the server may know why it ended `goal`."""
         is_own_wish = status is GoalStatus.CANCELED and goal._cancel_requested
-        if is_own_wish or status not in (GoalStatus.ABORTED, GoalStatus.CANCELED):
-            return ""
-        return await self._told(goal)
+        return status in (GoalStatus.ABORTED, GoalStatus.CANCELED) and not is_own_wish
 
     async def _told(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
         """Return why the server rejected or ended `goal`, if it runs aionode and knows; else ""."""
         if not self._get_result.service_is_ready():
             return ""
         try:
-            await self._ask(uuid_message(reason_id(goal._key)), ANSWER_LIMIT_S)
+            request = self._result_request(uuid_message(reason_id(goal._key)))
+            await self._get_result.call(request, ANSWER_LIMIT_S)
         except ServiceError as error:
             return error.error_text if error.error_type == "AbortReason" else ""
         except RequestTimeoutError:
@@ -608,8 +644,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         for answer in self._signs.leave(self._close_parts_after_destroy):
             self._expect_at_end(answer)
         self._close_parts()
+        self._delayed.cancel()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
+            if goal._asking is not None:
+                goal._asking.cancel()
             goal._end()
 
     def _close_parts(self) -> None:

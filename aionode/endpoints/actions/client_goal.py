@@ -113,6 +113,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         feedback_callback: Callable[[Any], Any] | None,
     ) -> None:
         self.goal_id = goal_id
+        self._key = bytes(goal_id.uuid)
         self.stamp: Any = None
         self.status = GoalStatus.UNKNOWN
         self.accepted = False
@@ -120,6 +121,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._feedback_callback = feedback_callback
         # The exchange that sends the goal, once started.
         self._sending: Exchange | None = None
+        self._asking: Exchange | None = None  # the one that asks for the result, once started
         self._cancel_sent = False  # whether a cancel request is in progress
         self._cancel_requested = False  # whether this client ever sent one
         self._waiting = 0  # number of tasks waiting for the goal
@@ -142,11 +144,6 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     def text(self) -> str:
         """The id in 32 hexadecimal digits."""
         return self._key.hex()
-
-    @property
-    def _key(self) -> bytes:
-        """The id in 16 bytes."""
-        return bytes(self.goal_id.uuid)
 
     @property
     def done(self) -> bool:

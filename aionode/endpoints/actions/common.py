@@ -146,10 +146,12 @@ def checked_client_lost(on_client_lost: str | None, client_lost_sec: float, subj
 
 def uuid_message(goal_id: bytes) -> Any:
     """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
-    # Imported here, as programs without actions never need this message.
+    # Imported here, as programs without actions never need them.
+    import numpy as np
+
     from aionode.interfaces.unique_identifier_msgs.msg import UUID
 
-    return UUID(uuid=list(goal_id))
+    return UUID(uuid=np.frombuffer(goal_id, np.uint8))
 
 
 def stamp_ns(stamp: Any) -> int:

@@ -422,7 +422,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 self._accepted, lambda _, goal: self._hand_over.run(goal), concurrent=True
             )
             create_own_task(tasks, hand_over)
-            create_own_task(tasks, consume(self._waiting, self._begin, self._concurrent))
+            inline = self._concurrent is not False
+            begin = consume(self._waiting, self._begin, self._concurrent, inline=inline)
+            create_own_task(tasks, begin)
 
     def _enqueue(
         self,
@@ -431,7 +433,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> None:
         """Queue `goal` for execution. Used by its handle."""
         runner = None if execute_callback is None else self._executing(execute_callback)
-        self._waiting.put((goal, runner))
+        self._waiting.hand_over((goal, runner))
 
     def _begin(
         self, entered_ns: int, item: tuple[ServerGoalHandle[Any, Any, Any], CallbackRunner | None]
@@ -551,7 +553,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     # Results
 
-    async def _on_result(self, request: Any) -> Any:
+    def _on_result(self, request: Any) -> Any:
+        """Return the response, or its coroutine if the goal has not ended or feedback waits."""
         goal_id = request.goal_id.uuid.tobytes()
         response = self.action_type.Impl.GetResultService.Response()
         goal = self._goals.get(goal_id)
@@ -563,20 +566,29 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 raise AbortReason(reason)
             self._client_watch.take(goal_id)
             return response
-        status, result = await goal._outcome()
-        if goal._run is not None:
-            add_cause(goal._run)
-        await self._send_feedback_first()
-        response.status = int(status)
-        if result is not None:
-            response.result = result
-        return response
+        if goal._known.is_set() and self._feedback._is_drained():
+            return self._with_result(goal, response)
+        return self._after_feedback(goal, response)
 
-    async def _send_feedback_first(self) -> None:
-        """Send feedback before the result, as clients stop listening once they have the result."""
+    async def _after_feedback(self, goal: Any, response: Any) -> Any:
+        """Wait until a goal has ended, and send its feedback before its result.
+
+        Clients stop listening once they have the result.
+        """
+        await goal._known.wait()
         with suppress(TimeoutError):  # a full KEEP_ALL reader must not hold results back
             async with asyncio.timeout(DRAIN_LIMIT_S):
                 await self._feedback.drain()
+        return self._with_result(goal, response)
+
+    def _with_result(self, goal: Any, response: Any) -> Any:
+        """Return `response` with the outcome of `goal`."""
+        if goal._run is not None:
+            add_cause(goal._run)
+        response.status = int(goal.status)
+        if goal._result is not None:
+            response.result = goal._result
+        return response
 
     def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
         """Keep the result of an ended goal for `result_timeout`. Used by its handle."""
@@ -600,8 +612,10 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             )
         if not self.destroyed:
             message = self.action_type.Impl.FeedbackMessage(goal_id=goal.goal_id, feedback=feedback)
-            with suppress(QueueFullError):  # a slow reader must not stop the goal
+            try:
                 self._feedback.publish(message)
+            except QueueFullError:  # a slow reader must not stop the goal
+                return
 
     def _publish_status(self) -> None:
         """Send the states of all goals soon. Used by goal handles."""

@@ -265,8 +265,3 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             self._result = result
             self._known.set()
             self._server._keep(self)
-
-    async def _outcome(self) -> tuple[GoalStatus, ResultT | None]:
-        """Wait for the result; return it with the final state."""
-        await self._known.wait()
-        return self.status, self._result

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from msgspec import Struct, field
 
-from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
+from aionode._process.concurrency import SLICE_NS, is_cancelled_task, run_in_thread
 from aionode._process.processor_waits import WAITS
 from aionode._process.tracebacks import traceback_text
 from aionode.clock import perf_ns
@@ -512,37 +512,42 @@ def consume(
     """Return a coroutine that passes all items of `message_queue` to `handle`, until cancelled.
 
     `handle` runs what can run at once and returns the rest to await, if any. With `concurrent` the
-    rest runs in a TaskGroup alongside the next items, any number at once or at most the given
-    number, while further items stay queued. Without it, `inline` lets items bypass the queue while
-    it is empty (see `MessageQueue`); not for coroutine functions.
+    rest runs in a task alongside the next items, any number at once or at most the given number,
+    while further items stay queued. `inline` lets items bypass the queue while it is empty (see
+    `MessageQueue`); not for coroutine functions that run one at a time.
     """
     if concurrent is False:
         return message_queue.consume(handle, inline=inline)
-    return _consume_concurrently(message_queue, handle, None if concurrent is True else concurrent)
+    limit = None if concurrent is True else concurrent
+    return _consume_concurrently(message_queue, handle, limit, inline=inline)
 
 
 async def _consume_concurrently(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
     limit: int | None,
+    *,
+    inline: bool,
 ) -> None:
     running: set[asyncio.Task[None]] = set()
-    turn_ends_ns = 0
+
+    def start(entered_ns: int, item: T) -> Coroutine[Any, Any, None] | None:
+        rest = handle(entered_ns, item)
+        if rest is None:
+            return None
+        task = create_own_task(tasks, rest)
+        if limit is None:
+            return None
+        running.add(task)
+        task.add_done_callback(running.discard)
+        return until_fewer(limit) if len(running) >= limit else None
+
+    async def until_fewer(limit: int) -> None:
+        while len(running) >= limit:
+            await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
+
     async with asyncio.TaskGroup() as tasks:
-        while True:
-            while limit is not None and len(running) >= limit:
-                await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
-            await message_queue.wait()
-            if not message_queue:
-                continue
-            rest = handle(*message_queue.pop())
-            if rest is not None:
-                task = create_own_task(tasks, rest)
-                running.add(task)
-                task.add_done_callback(running.discard)
-            if perf_ns() >= turn_ends_ns:
-                await checkpoint()
-                turn_ends_ns = perf_ns() + message_queue.slice_ns
+        await message_queue.consume(start, inline=inline)
 
 
 # Reports

@@ -349,6 +349,11 @@ class MessageQueue(InlineCall, Generic[T]):
             self._wait_on(waiter)
         return True
 
+    def hand_over(self, item: T) -> None:
+        """Handle `item` now if possible; otherwise queue it."""
+        if not self.take_inline(item, perf_ns() + self.slice_ns):
+            self.put(item)
+
     def _plan_turn(self, waiter: asyncio.Future[None]) -> None:
         """Handle the queue in the loop's next iteration, in which its consumer would wake up."""
         self._inline_waiter = None

@@ -93,6 +93,7 @@ class SubscriptionReader(MessageQueue[Any]):
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
 
     Attributes:
+        is_concurrent: Whether several callbacks may run at once, each in a task of its own.
         monitor: Learns which publishers are alive, or None.
         on_arrival: Called with each message; returns whether to deliver it. None delivers all.
         on_lost: Called with the number of missing messages, or None.
@@ -109,6 +110,7 @@ class SubscriptionReader(MessageQueue[Any]):
         "_now_ns",
         "_reception_sequence",
         "endpoint",
+        "is_concurrent",
         "monitor",
         "on_arrival",
         "on_lost",
@@ -137,6 +139,7 @@ class SubscriptionReader(MessageQueue[Any]):
         self._now_ns = time_base.system_ns
         self._closed = False
         self._accepts: Callable[[Any], bool] | None = None  # the content filter
+        self.is_concurrent = False
         self.monitor: Monitor | None = None
         self.on_arrival: Callable[[SampleInfo], bool] | None = None
         self.on_lost: Callable[[int], None] | None = None
@@ -230,7 +233,7 @@ class SubscriptionReader(MessageQueue[Any]):
         what a message in a burst costs here.
         """
         runner, stats = self.runner, self.stats
-        if runner.offload:
+        if runner.offload or self.is_concurrent:
             return super().handle_items(handle, now_ns, turn_ends_ns)
         call, budget_ns = self._call, runner.budget_ns
         waited, took = stats._waited_ns, stats._took_ns

@@ -223,6 +223,10 @@ class Writer(Registration):
     async def drain(self) -> None:
         """Wait until `has_room`, and what was written has been passed on."""
 
+    def is_drained(self) -> bool:
+        """Return whether `drain` would not have to wait; False if that is unknown."""
+        return type(self).drain is Writer.drain
+
     def assert_liveliness(self) -> None:
         """Tell the readers that the publisher is alive, without a message."""
 

@@ -252,6 +252,10 @@ class LocalWriter(Writer):
         for reader in self._matched:
             reader.reader.note_alive(self.endpoint.gid)
 
+    def is_drained(self) -> bool:
+        """Return `has_room`."""
+        return self.has_room()
+
     async def drain(self) -> None:
         """Wait until `has_room`."""
         while not self.has_room():

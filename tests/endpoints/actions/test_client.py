@@ -709,7 +709,7 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
     server = ends.serving.create_action_server(Fibonacci, "other", ends.worker)
     client: Client = ends.asking.create_action_client(Fibonacci, "other")
     await client.wait_for_server()
-    client._ask = lambda _goal_id, _limit=None: Client._ask(client, uuid_of(404))  # type: ignore[assignment,method-assign]  # asks for a goal that was forgotten
+    client._result_request = lambda _: Client._result_request(client, uuid_of(404))  # type: ignore[assignment,method-assign]  # asks for a goal that was forgotten
 
     sent = await client.send_goal(Fibonacci.Goal())
 
@@ -717,6 +717,17 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
     with pytest.raises(GoalLostError, match="does not know it any more"):
         await client.call(Fibonacci.Goal())
     server.destroy()
+
+
+async def test_no_task_waits_for_the_result_of_a_goal(ends: Ends) -> None:
+    """A client that sends many goals has one task for all of them."""
+    sent = [(await begin(ends))[0] for _ in range(3)]
+    await settle()
+
+    names = [getattr(task.get_coro(), "__qualname__", "") for task in asyncio.all_tasks()]
+
+    assert not any(each.done for each in sent)
+    assert [name for name in names if name.startswith("ActionClient.")] == ["ActionClient._run"]
 
 
 # The client's own end

@@ -618,6 +618,7 @@ async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
     with monkeypatch.context() as not_found:
         not_found.setattr(owner.graph, "endpoints", lambda *_, **__: [])
         await asking.send_goal(Fibonacci.Goal())
+    owner.graph.changes += 1  # it is found
     goal = await worker.begun.get()
     calls = result_client(owner).stats.calls
 

@@ -10,6 +10,7 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.action import ActionServer, CancelResponse, GoalResponse, GoalStatus
+from aionode.engine.context import Context
 from aionode.errors import (
     CallbackSignatureError,
     EntityDestroyedError,
@@ -24,7 +25,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import HistoryPolicy, QoSProfile
 from aionode.testing import ManualClock, local_context, settle
-from tests.support.actions import Goal, PlainClient, Worker, endpoint_count
+from tests.support.actions import Goal, Impl, PlainClient, Worker, endpoint_count
 
 Serve = Callable[..., ActionServer[Any, Any, Any]]
 
@@ -897,6 +898,30 @@ async def test_feedback_of_another_type_is_refused(
         TypeError, match="is a String; a example_interfaces/action/Fibonacci_Feedback is needed"
     ):
         goal.publish_feedback(String())  # type: ignore[arg-type]  # the mistake
+
+
+async def test_a_result_waits_for_feedback_that_has_no_room_yet(worker: Worker) -> None:
+    """Clients stop listening once they have the result, though not for a reader that is stuck."""
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    context = Context(transport="local", queue_bytes=1 << 16)
+    async with context, Node("node", context=context) as node:
+        node.create_action_server(Fibonacci, "fibonacci", worker)
+        client = PlainClient(node)
+        await client.send()
+        goal = await worker.begun.get()
+        topic = client.feedback.topic_name
+        slow = node.create_subscription(Impl.FeedbackMessage, topic, None, keep_all)
+        for number in range(100):
+            goal.publish_feedback(Fibonacci.Feedback(sequence=[number] * 1000))
+        worker.may_end.set()
+        await settle()
+        result = asyncio.ensure_future(client.result())  # noqa: TID251  # beside the test
+        await settle()
+        assert not result.done()
+
+        await slow.receive()
+
+        assert (await result).status == GoalStatus.SUCCEEDED
 
 
 async def test_the_status_topic_tells_each_change_of_all_goals(

@@ -163,12 +163,20 @@ class LinkWriter(Writer):
 
     async def drain(self) -> None:
         """Wait until everything was passed to the operating system, or to Zenoh."""
+        while slow := self._slow():
+            await slow[0].connection.progress()
+        await self._zenoh.drain()
+
+    def is_drained(self) -> bool:
+        """Return whether `drain` would not have to wait."""
+        return not self._slow() and self._zenoh.is_drained()
+
+    def _slow(self) -> list[LinkSendQueue]:
+        """Send what can be sent now, and return the queues that have more."""
         send_queues = self.routes.send_queues
         for connection in list(send_queues):
             connection.send_rest()
-        while slow := [each for each in send_queues.values() if not each.is_done()]:
-            await slow[0].connection.progress()
-        await self._zenoh.drain()
+        return [each for each in send_queues.values() if not each.is_done()]
 
     def close(self) -> None:
         """Withdraw the publisher."""

@@ -196,6 +196,10 @@ class RclWriter(RclDeclaration, Writer):
         """Wait until everything was passed to the middleware."""
         await self._queue.drain()
 
+    def is_drained(self) -> bool:
+        """Return whether everything was passed to the middleware."""
+        return not len(self._queue)
+
     async def drain(self) -> None:
         """Wait until everything was passed to the middleware."""
         await self._queue.drain()

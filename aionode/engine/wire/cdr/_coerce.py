@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import struct
 from array import array
+from functools import cache
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from aionode.engine.wire.cdr._codegen import NeedsFallback
 
-__all__ = ["coerce_array", "octets", "real_numbers", "whole_numbers"]
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["array_coercer", "octets", "real_numbers", "whole_numbers"]
 
 CLASSES: dict[str, set[type]] = {"b": {bool}, "i": {int}, "u": {int}, "f": {float, int}}
 """Classes of numbers that `struct` converts correctly, by kind of dtype."""
@@ -51,23 +55,27 @@ def real_numbers(*values: object) -> None:
             raise NeedsFallback
 
 
-def coerce_array(value: object, dtype: Any, code: str) -> Any:
-    """Return a list of numbers, an `array.array` or an ndarray subclass as an ndarray.
+@cache
+def array_coercer(dtype: Any, code: str) -> Callable[[object], Any]:
+    """Return a function that makes an ndarray of a list, an `array.array` or an ndarray subclass.
 
     Args:
-        value: The value of an array field.
         dtype: The dtype of the field.
         code: The `struct` format character of its elements.
     """
     import numpy as np
 
-    if isinstance(value, np.ndarray):
-        if value.dtype != dtype:
+    ndarray, frombuffer, pack, classes = np.ndarray, np.frombuffer, struct.pack, CLASSES[dtype.kind]
+
+    def coerce(value: object) -> Any:
+        if isinstance(value, (list, tuple)):  # a union takes three times as long
+            if not classes.issuperset(map(type, value)):
+                raise NeedsFallback
+            return frombuffer(pack(f"<{len(value)}{code}", *value), dtype)  # checks the ranges
+        if isinstance(value, array) and value.typecode == code:
+            return frombuffer(value, dtype)
+        if not isinstance(value, ndarray) or value.dtype != dtype:
             raise NeedsFallback
-        return value.view(np.ndarray)
-    if isinstance(value, array) and value.typecode == code:
-        return np.frombuffer(value, dtype)
-    if not isinstance(value, list | tuple) or not set(map(type, value)) <= CLASSES[dtype.kind]:
-        raise NeedsFallback
-    # struct checks the ranges.
-    return np.frombuffer(struct.pack(f"<{len(value)}{code}", *value), dtype)
+        return value.view(ndarray)
+
+    return coerce

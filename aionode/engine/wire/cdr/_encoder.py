@@ -14,7 +14,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from aionode.engine.wire.cdr._codegen import CodeBuilder, NeedsFallback
-from aionode.engine.wire.cdr._coerce import coerce_array, octets, real_numbers, whole_numbers
+from aionode.engine.wire.cdr._coerce import array_coercer, octets, real_numbers, whole_numbers
 from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
 from aionode.engine.wire.cdr._family import OWN, MessageFamily
 from aionode.engine.wire.cdr._layout import (
@@ -290,11 +290,12 @@ class EncoderGenerator:
 
         source = self._source
         primitive = PRIMITIVES[kind.kind]
-        dtype = source.constant("dtype", np.dtype(f"<{primitive.dtype}"))
+        wanted = np.dtype(f"<{primitive.dtype}")
+        dtype = source.constant("dtype", wanted)
         array = source.constant("ndarray", np.ndarray)
-        closer = source.constant("usual", coerce_array)
+        closer = source.constant("usual", array_coercer(wanted, primitive.code))
         unusual = f"{local}.__class__ is not {array} or {local}.dtype is not {dtype}"
-        source.line(f"if {unusual}: {local} = {closer}({local}, {dtype}, {primitive.code!r})")
+        source.line(f"if {unusual}: {local} = {closer}({local})")
         source.require(f"{local}.ndim == 1")
         if kind.container == "array":
             source.require(f"len({local}) == {kind.size}")

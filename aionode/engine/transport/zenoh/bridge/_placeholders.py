@@ -94,6 +94,10 @@ class WriterPlaceholder(Placeholder[Writer], Writer):
         """Whether another message can wait to be sent."""
         return self.endpoint is None or self.endpoint.has_room()
 
+    def is_drained(self) -> bool:
+        """Return whether `drain` would not have to wait."""
+        return self.endpoint is None or self.endpoint.is_drained()
+
     async def drain(self) -> None:
         """Wait until all messages were passed on."""
         if self.endpoint is not None:

@@ -319,11 +319,19 @@ class ZenohWriter(Declaration, Writer):
 
     async def drain(self) -> None:
         """Wait until there is room and all messages were passed to Zenoh."""
-        while self.history is not None and (self.history.unsent or not self.has_room()):
+        while self._has_unsent():
             self._drained.clear()
             self._watch()
             await self._drained.wait()
         await self.sender.drain()
+
+    def is_drained(self) -> bool:
+        """Return whether `drain` would not have to wait."""
+        return not self._has_unsent() and self.sender.is_done()
+
+    def _has_unsent(self) -> bool:
+        """Return whether messages wait for reliable readers."""
+        return self.history is not None and bool(self.history.unsent or not self.has_room())
 
     def _progress(self) -> None:
         """Wake `drain` if there is room now."""
