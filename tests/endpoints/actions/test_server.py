@@ -10,7 +10,6 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.action import ActionServer, CancelResponse, GoalResponse, GoalStatus
-from aionode.engine.context import Context
 from aionode.errors import (
     CallbackSignatureError,
     EntityDestroyedError,
@@ -23,7 +22,7 @@ from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.qos import HistoryPolicy, QoSProfile
+from aionode.qos import KEEP_ALL_DEPTH, HistoryPolicy, QoSProfile
 from aionode.testing import ManualClock, local_context, settle
 from tests.support.actions import Goal, Impl, PlainClient, Worker, endpoint_count
 
@@ -903,16 +902,16 @@ async def test_feedback_of_another_type_is_refused(
 async def test_a_result_waits_for_feedback_that_has_no_room_yet(worker: Worker) -> None:
     """Clients stop listening once they have the result, though not for a reader that is stuck."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    context = Context(transport="local", queue_bytes=1 << 16)
-    async with context, Node("node", context=context) as node:
+    async with local_context() as context, Node("node", context=context) as node:
         node.create_action_server(Fibonacci, "fibonacci", worker)
         client = PlainClient(node)
         await client.send()
         goal = await worker.begun.get()
         topic = client.feedback.topic_name
         slow = node.create_subscription(Impl.FeedbackMessage, topic, None, keep_all)
-        for number in range(100):
-            goal.publish_feedback(Fibonacci.Feedback(sequence=[number] * 1000))
+        feedback = Fibonacci.Feedback()
+        for _ in range(KEEP_ALL_DEPTH):
+            goal.publish_feedback(feedback)
         worker.may_end.set()
         await settle()
         result = asyncio.ensure_future(client.result())  # noqa: TID251  # beside the test
