@@ -61,6 +61,9 @@ PRESETS = [
 ]
 WITHIN = {
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
+    "aionode.endpoints.publisher": {"make_lease"},  # for managed nodes
+    # for tf's filters, and managed nodes
+    "aionode.endpoints.subscription": {"reader_of", "silence_watch_of", "take_from"},
     "aionode.endpoints.timer": {"to_period_ns"},  # for nodes
     "aionode.node": {"direct_subscription", "parts_subscription"},  # for recorders and gateways
     "aionode.transport.link": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts

@@ -75,6 +75,18 @@ def test_no_private_name_crosses_a_room() -> None:
     assert structure.crossings() == []
 
 
+def test_reading_a_private_attribute_of_another_room_is_a_crossing() -> None:
+    """The room that defines the name may read it, and a subclass anywhere of itself."""
+    reader = "context._acquire()\nself._acquire()"
+    trees = {
+        Path("engine/context.py"): ast.parse("class Context:\n    def _acquire(self): ..."),
+        Path("engine/bare_node.py"): ast.parse(reader),
+        Path("node/_node.py"): ast.parse(reader),
+    }
+
+    assert structure.reads(trees) == ["node/_node.py:1: context._acquire"]
+
+
 def test_no_folder_has_more_than_twenty_modules() -> None:
     """A reader finds an idea by its folder; files that the names of ROS decide are free of it."""
     folders = Counter(path.parent.relative_to(ROOT).as_posix() for path in MODULES)

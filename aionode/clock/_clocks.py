@@ -230,8 +230,6 @@ class Clock:
         self._jumps = Jumps()
         # Sleeps in order of arrival; each is set to True when due, or to False by `destroy`.
         self._sleepers: dict[asyncio.Future[bool], None] = {}
-        # Creates the exception for sleeps ended by `destroy`; a node's own tasks get another one.
-        self._end_of_wait: Callable[[str], BaseException] = EntityDestroyedError
 
     @property
     def clock_type(self) -> ClockType:
@@ -297,6 +295,10 @@ class Clock:
         while self._read() < until.nanoseconds:  # repeats if the machine's clock was set back
             await self._sleep(until.nanoseconds, self.call_at)
 
+    def _end_of_wait(self) -> BaseException:
+        """Return the exception for a sleep ended by `destroy`; a node's own tasks get another."""
+        return EntityDestroyedError(repr(self))
+
     async def _sleep(
         self, when_ns: int, call_at: Callable[[int, Callable[[], None]], Alarm]
     ) -> None:
@@ -310,7 +312,7 @@ class Clock:
         self._sleepers[sleeper] = None
         try:
             if not await sleeper:
-                raise self._end_of_wait(repr(self))
+                raise self._end_of_wait()
         finally:
             del self._sleepers[sleeper]
             alarm.cancel()

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
     from aionode.engine.transport.base import StopSender
 
-__all__ = ["Publisher"]
+__all__ = ["Publisher", "make_lease"]
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -233,29 +233,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             TypeError: `ttl_sec` is not a number, or `clock` not a clock.
             ValueError: `ttl_sec` is not positive and finite.
         """
-        return self._make_lease(stop, ttl_sec, clock)
-
-    def _make_lease(
-        self,
-        stop: MsgT | bytes | bytearray | memoryview | None,
-        ttl_sec: float,
-        clock: Clock | None,
-        refuse: Callable[[], None] | None = None,
-    ) -> CommandLease[MsgT]:
-        """Create a lease; `refuse` raises if it cannot be entered."""
-        if keeps_all(self.qos_profile):
-            raise InvalidQoSProfileException(
-                f"a lease of {self.topic_name} needs a KEEP_LAST publisher: the stop must not wait "
-                "for slow readers, as messages of a KEEP_ALL one do"
-            )
-        qos = self.qos_profile
-        depth = depth_of(qos)
-        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and depth > 1:
-            raise InvalidQoSProfileException(
-                f"a lease of {self.topic_name} needs depth 1 with TRANSIENT_LOCAL, not {depth}: a "
-                "late subscription would get old commands before the stop"
-            )
-        return CommandLease(self, stop, ttl_sec, clock, self._time_base, refuse)
+        return make_lease(self, stop, ttl_sec, clock)
 
     def _hold(
         self, lease: CommandLease[MsgT], stop: MsgT | bytes | bytearray | memoryview | None
@@ -397,3 +375,26 @@ class Publisher(Endpoint, Generic[MsgT]):
             task.cancel()
         for writer in self._all_writers:
             writer.close()
+
+
+def make_lease(
+    publisher: Publisher[MsgT],
+    stop: MsgT | bytes | bytearray | memoryview | None,
+    ttl_sec: float,
+    clock: Clock | None,
+    refuse: Callable[[], None] | None = None,
+) -> CommandLease[MsgT]:
+    """Create a lease, like `Publisher.lease`; `refuse` raises if it cannot be entered."""
+    qos, topic = publisher.qos_profile, publisher.topic_name
+    if keeps_all(qos):
+        raise InvalidQoSProfileException(
+            f"a lease of {topic} needs a KEEP_LAST publisher: the stop must not wait for slow "
+            "readers, as messages of a KEEP_ALL one do"
+        )
+    depth = depth_of(qos)
+    if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and depth > 1:
+        raise InvalidQoSProfileException(
+            f"a lease of {topic} needs depth 1 with TRANSIENT_LOCAL, not {depth}: a late "
+            "subscription would get old commands before the stop"
+        )
+    return CommandLease(publisher, stop, ttl_sec, clock, publisher._time_base, refuse)

@@ -52,7 +52,14 @@ if TYPE_CHECKING:
     from aionode.engine.transport.base import Raw, Registration
     from aionode.graph import EndpointInfo
 
-__all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
+__all__ = [
+    "MessageInfo",
+    "Subscription",
+    "SubscriptionCallback",
+    "reader_of",
+    "silence_watch_of",
+    "take_from",
+]
 
 ItemT = TypeVar("ItemT")
 
@@ -275,7 +282,7 @@ class Subscription(Endpoint, Generic[ItemT]):
 
     def __aiter__(self) -> AsyncIterator[ItemT]:
         """Iterate over messages as they arrive, until the subscription is destroyed."""
-        self._refuse_if_it_has_a_callback()
+        reader_of(self)
         return self
 
     async def __anext__(self) -> ItemT:
@@ -292,32 +299,15 @@ class Subscription(Endpoint, Generic[ItemT]):
             EntityDestroyedError: the subscription is destroyed, and all messages have been read.
             RuntimeError: the subscription has a callback, which gets the messages.
         """
-        self._refuse_if_it_has_a_callback()
+        reader = reader_of(self)
         if perf_ns() >= self._turn_ends_ns:
             # While the queue has messages this never waits, so nothing else would run.
             await checkpoint()
-            self._turn_ends_ns = perf_ns() + self._reader.slice_ns
-        while not self._reader:
+            self._turn_ends_ns = perf_ns() + reader.slice_ns
+        while not reader:
             self._refuse_if_destroyed("read messages")
-            await self._reader.wait()
-        return self._take()
-
-    def _take(self) -> ItemT:
-        """Take the oldest message and count it."""
-        entered_ns, item = self._reader.pop()
-        self.stats.received += 1
-        self.stats.queue_wait.record(perf_ns() - entered_ns)
-        if isinstance(self._reader, CausalReader):
-            item = self._reader.taken(entered_ns, item)
-        taken: ItemT = item
-        return taken
-
-    def _refuse_if_it_has_a_callback(self) -> None:
-        if self.callback is not None:
-            raise RuntimeError(
-                f"{self._subject}: its callback gets the messages; to read them yourself, create "
-                "the subscription without a callback"
-            )
+            await reader.wait()
+        return take_from(self)
 
     # Called by the node
 
@@ -351,3 +341,34 @@ class Subscription(Endpoint, Generic[ItemT]):
         for registration in self._registrations:
             registration.close()
         self._reader.close(discard=self._runner is not None)
+
+
+def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:
+    """Return where the messages of a subscription without a callback wait for `take_from`.
+
+    Raises:
+        RuntimeError: it has a callback, which gets them.
+    """
+    if subscription.callback is not None:
+        raise RuntimeError(
+            f"{subscription._subject}: its callback gets the messages; to read them yourself, "
+            "create the subscription without a callback"
+        )
+    return subscription._reader
+
+
+def take_from(subscription: Subscription[ItemT]) -> ItemT:
+    """Take the oldest message and count it."""
+    reader, stats = subscription._reader, subscription.stats
+    entered_ns, item = reader.pop()
+    stats.received += 1
+    stats.queue_wait.record(perf_ns() - entered_ns)
+    if isinstance(reader, CausalReader):
+        item = reader.taken(entered_ns, item)
+    taken: ItemT = item
+    return taken
+
+
+def silence_watch_of(subscription: Subscription[Any]) -> SilenceWatch | None:
+    """Return what calls `on_silence` of a subscription; None without one."""
+    return subscription._silence_watch

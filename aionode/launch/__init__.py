@@ -168,12 +168,12 @@ class Plan:
 
 def left_out_texts(left_out: Mapping[Missing, list[Any]], steps: list[Step]) -> Iterator[str]:
     """Yield what is left out, by what is missing, and which handlers never run."""
+    from launch.launch_description_entity import where_of  # after `install`
+
     for missing, entities in left_out.items():
         is_package = missing.kind == "package"
         remark = remark_on(missing.name, missing.executable) if is_package else ""
-        places = ", ".join(
-            f"{entity.describe()} ({entity._LaunchDescriptionEntity__where})" for entity in entities
-        )
+        places = ", ".join(f"{entity.describe()} ({where_of(entity)})" for entity in entities)
         yield f"{missing}{remark and f': it is {remark}'}; left out: {places}"
     ids = {id(entity) for entities in left_out.values() for entity in entities}
     for step in steps:

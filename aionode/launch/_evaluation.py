@@ -38,7 +38,7 @@ from launch.actions import (
 from launch.event_handler import entities_of
 from launch.launch_context import KnownLater, LaunchContext
 from launch.launch_description import LaunchDescription
-from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.launch_description_entity import LaunchDescriptionEntity, where_of
 from launch.stand_in import StandIn, package_of
 from launch.substitutions import UnknownConfiguration
 
@@ -360,8 +360,8 @@ def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
     for step in steps:
         if isinstance(step, Timer):
             entities = step.entities
-        elif isinstance(step, Watch) and not step.ends:
-            entities = step.handler._BaseEventHandler__known_entities() or []
+        elif isinstance(step, Watch):
+            entities = step.entities or []
         else:
             continue
         if id(entities) in checked:
@@ -375,7 +375,7 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
     context.visited += 1
     is_too_much = context.visited > MAX_ENTITIES and isinstance(entity, IncludeLaunchDescription)
     if depth > MAX_DEPTH or is_too_much:
-        path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
+        path, _, line = where_of(entity).rpartition(":")
         many = f"{MAX_DEPTH} levels" if depth > MAX_DEPTH else f"{MAX_ENTITIES} entities"
         problem = f"includes more than {many}; does a file include itself?"
         raise LaunchFileError(path, problem, line=int(line))
@@ -395,7 +395,7 @@ def failed(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError
     """Return the error of an entity; for an included file, with the place of the include."""
     if isinstance(error, LaunchFileError):
         if error.line is None and isinstance(entity, IncludeLaunchDescription):
-            path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
+            path, _, line = where_of(entity).rpartition(":")
             problem = f"includes {error.path}, which {error.problem}"
             return LaunchFileError(path, problem, line=int(line))
         return error
@@ -477,7 +477,7 @@ def declared_elsewhere(error: BaseException | None, context: LaunchContext) -> M
 
 def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
     """Return the error of an entity, at the line of the user's function or else its own."""
-    path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
+    path, _, line = where_of(entity).rpartition(":")
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         if frame.filename.endswith((".launch.py", "_launch.py")):
             path, line = frame.filename, str(frame.lineno)
@@ -509,7 +509,7 @@ def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
                 except Exception:  # noqa: BLE001, S112  # its path depends on arguments
                     continue
             elif isinstance(entity, GroupAction):
-                collect(entity._GroupAction__actions, depth)
+                collect(entity.get_sub_entities(), depth)
             elif isinstance(entity, TimerAction):
                 collect(entity.actions, depth)
 

@@ -17,8 +17,9 @@ from launch.conditions import IfCondition, UnlessCondition
 from launch.frontend.expose import SUBSTITUTIONS
 from launch.frontend.parse_substitution import parse_words
 from launch.launch_description import LaunchDescription
+from launch.launch_description_entity import set_where
 from launch.launch_description_sources import AnyLaunchDescriptionSource
-from launch.substitution import Substitution, TextSubstitution
+from launch.substitution import Substitution, TextSubstitution, of_words
 from launch.utilities.type_utils import coerce_to_type
 from launch_ros import actions as ros_actions
 from launch_ros import descriptions
@@ -35,18 +36,18 @@ def register_substitutions() -> None:
         "and": substitutions.AndSubstitution,
         "anon": substitutions.AnonName,
         "any": substitutions.AnySubstitution,
-        "command": substitutions.Command._Substitution__of_words,
+        "command": of_words(substitutions.Command),
         "dirname": substitutions.ThisLaunchFileDir,
-        "env": substitutions.EnvironmentVariable._Substitution__of_words,
+        "env": of_words(substitutions.EnvironmentVariable),
         "equals": substitutions.EqualsSubstitution,
-        "eval": substitutions.PythonExpression._Substitution__of_words,
+        "eval": of_words(substitutions.PythonExpression),
         "exec-in-pkg": launch_ros.substitutions.ExecutableInPackage,
         "file-content": substitutions.FileContent,
         "filename": substitutions.ThisLaunchFile,
-        "find-exec": substitutions.FindExecutable._Substitution__of_words,
+        "find-exec": of_words(substitutions.FindExecutable),
         "find-pkg-prefix": launch_ros.substitutions.FindPackagePrefix,
         "find-pkg-share": launch_ros.substitutions.FindPackageShare,
-        "for-var": substitutions.ForEachVar._Substitution__of_words,
+        "for-var": of_words(substitutions.ForEachVar),
         "if": substitutions.IfElseSubstitution,
         "index": substitutions.ForLoopIndex,
         "launch_log_dir": substitutions.LaunchLogDir,
@@ -54,9 +55,9 @@ def register_substitutions() -> None:
         "not": substitutions.NotSubstitution,
         "not-equals": substitutions.NotEqualsSubstitution,
         "or": substitutions.OrSubstitution,
-        "param": launch_ros.substitutions.Parameter._Substitution__of_words,
+        "param": of_words(launch_ros.substitutions.Parameter),
         "path-join": lambda *words: substitutions.PathJoinSubstitution(words),
-        "var": substitutions.LaunchConfiguration._Substitution__of_words,
+        "var": of_words(substitutions.LaunchConfiguration),
     }
     SUBSTITUTIONS.update(kinds)
 
@@ -194,7 +195,7 @@ def action_of(element: Element) -> actions.Action:
         raise
     except (TypeError, ValueError, KeyError, RuntimeError) as error:
         raise LaunchFileError(path, str(error), line=int(line)) from error
-    action._LaunchDescriptionEntity__where = element.where
+    set_where(action, element.where)
     return action
 
 

@@ -66,11 +66,10 @@ def of_handler(
 ) -> Iterator[dict[str, Any]]:
     """Yield what an event handler does."""
     condition = f"at the {step.handler.describe()}"
-    entities = step.handler._BaseEventHandler__known_entities()
-    if entities is None:
+    if step.entities is None:
         yield {"when": [*when, condition], "calls": "a function"}
     else:
-        later = evaluate(entities, step.context.fork(ahead=True))
+        later = evaluate(step.entities, step.context.fork(ahead=True))
         yield from records(later, before, (*when, condition))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -76,6 +76,8 @@ class Process(Step):
     """Time from SIGINT to SIGTERM."""
     kill_after_sec: float = 5.0
     """Time from SIGTERM to SIGKILL."""
+    on_output: Callable[[bytes, int], object] | None = None
+    """Called with its output; the second argument is 1 for standard output, 2 for errors."""
     emulate_tty: bool = False
     autostart: bool = False
     """Whether its managed node is configured and activated."""
@@ -123,6 +125,7 @@ class Timer(Step):
     period_sec: float
     entities: list[Any]
     context: Any
+    is_canceled: Callable[[], bool]
 
 
 @dataclass(frozen=True)
@@ -131,6 +134,7 @@ class Call(Step):
 
     action: Any
     context: Any
+    run: Callable[[Any], Awaitable[None]]
 
     @property
     def text(self) -> str:
@@ -151,6 +155,8 @@ class Watch(Step):
 
     handler: Any
     context: Any
+    entities: list[Any] | None = None
+    """What is executed for any event; None if a function decides."""
     ends: bool = False
 
 

@@ -230,8 +230,8 @@ class RunningLaunch:
     ) -> Callable[[bytes, int], object] | None:
         """Return the listener for a process's output; None if no handler wants it."""
         listeners: list[Callable[[bytes, int], object]] = []
-        if step.action._ExecuteLocal__cached_output:
-            listeners.append(step.action._ExecuteLocal__note_output)
+        if step.on_output is not None:
+            listeners.append(step.on_output)
         if self._hears_output:
             listeners.append(events.note_output)
 
@@ -263,14 +263,14 @@ class RunningLaunch:
 
     async def _wait_for(self, step: Timer) -> None:
         await self._clock.sleep(step.period_sec)
-        if not (step.action._TimerAction__is_canceled or self._is_shutdown):
+        if not (step.is_canceled() or self._is_shutdown):
             self.carry_out(evaluate(step.entities, step.context))
 
     async def _call(self, step: Call) -> None:
         """Run a coroutine; steps that it adds to its context are executed at once."""
         step.context.steps = AtOnce(self.carry_out)
         try:
-            await step.action._OpaqueCoroutine__call(step.context)
+            await step.run(step.context)
         except Exception as error:
             raise failure_of(step.action, error) from error
 

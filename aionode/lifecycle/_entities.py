@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from aionode.endpoints.core.entity import end_lease
+from aionode.endpoints.publisher import make_lease
 from aionode.engine.rules.lifecycle_states import ACTIVE, TransitionCallbackReturn
 from aionode.engine.rules.managed_entity import ManagedEntity, SimpleManagedEntity
 from aionode.errors import EntityInactiveError
@@ -96,7 +98,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         Raises:
             Exception: the exceptions of `Publisher.lease`.
         """
-        return self._publisher._make_lease(stop, ttl_sec, clock, self._refuse_if_disabled)
+        return make_lease(self._publisher, stop, ttl_sec, clock, self._refuse_if_disabled)
 
     def _refuse_if_disabled(self) -> None:
         if not self.is_activated:
@@ -107,7 +109,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
         """Send the stop of an open lease, and disable the publisher."""
-        self._publisher._end_lease(self._inactive)
+        end_lease(self._publisher, self._inactive)
         return super().on_deactivate(state)
 
     def assert_liveliness(self) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.core.node_core import core_of
+from aionode.endpoints.subscription import silence_watch_of
 from aionode.engine.rules.lifecycle_answers import StateAnswers, fill_event
 from aionode.engine.rules.lifecycle_states import (
     ERROR_PROCESSING,
@@ -264,8 +265,9 @@ class LifecycleNode(Node):
         subscription = self.create_subscription(
             msg_type, topic, gate.dropping(callback), qos_profile, **options
         )
-        if subscription._silence_watch is not None:
-            gate.guard(subscription._silence_watch)
+        watch = silence_watch_of(subscription)
+        if watch is not None:
+            gate.guard(watch)
         return subscription
 
     def create_lifecycle_service(

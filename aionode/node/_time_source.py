@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.clock import Time
+from aionode.endpoints.core.endpoint import info_of
 from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.endpoints.core.node_core import core_of
 from aionode.engine.reports.simulated_time import ClockWatch, why_no_time
@@ -77,7 +78,7 @@ class TimeSource:
             core_of(self._node).shutdown.postpone(self._subscription, EndStage.GOALS)
             context = self._node.context
             watch = ClockWatch(
-                *(self._subscription._endpoint, context.graph, context.time_base),
+                *(info_of(self._subscription), context.graph, context.time_base),
                 heard=lambda: self._heard,
             )
             self._watch = core_of(self._node).add(WatchedClock(watch))

@@ -9,6 +9,7 @@ from weakref import finalize, ref
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
+from aionode.endpoints.subscription import reader_of, take_from
 from aionode.tf.buffer_core import time_ns_of
 from aionode.tf.frame_listing import seconds_text
 from aionode.tf.waiters import Waiter
@@ -67,20 +68,20 @@ class Filtered(Generic[MsgT]):
     async def __anext__(self) -> tuple[MsgT, TransformStamped]:
         """Return the next message whose transform is available. Cancelling loses nothing."""
         subscription = self._subscription
-        subscription._refuse_if_it_has_a_callback()
+        reader = reader_of(subscription)
         if perf_ns() >= self._turn_ends_ns:
             # If all messages are ready this never waits, so nothing else would run.
             await checkpoint()
-            self._turn_ends_ns = perf_ns() + subscription._reader.slice_ns
+            self._turn_ends_ns = perf_ns() + reader.slice_ns
         while True:
-            while subscription._reader and not self._ready:
-                self._take(subscription._take())
+            while reader and not self._ready:
+                self._take(take_from(subscription))
             if self._ready:
                 return self._ready.popleft()
             if subscription.destroyed or self._buffer._BufferCore__entity.destroyed:
                 raise StopAsyncIteration
             self._wake = asyncio.get_running_loop().create_future()
-            await subscription._reader.wait(self._wake)
+            await reader.wait(self._wake)
 
     def _take(self, msg: Any) -> None:
         """Make a message wait for its transform, if necessary."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aionode.endpoints.core.endpoint import watch_opposite
 from aionode.graph import EndpointKind
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.qos import DurabilityPolicy, QoSProfile
@@ -65,7 +66,7 @@ class TransformListener:
             TFMessage, tf_static_topic, self.static_callback, static_qos
         )
         for subscription in (self.tf_sub, self.tf_static_sub):
-            subscription._watch(self.__note_publisher)
+            watch_opposite(subscription, self.__note_publisher)
 
     def callback(self, data: TFMessage, info: MessageInfo) -> None:
         """Handle changing transforms."""

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import S_TO_NS, ClockChange, Duration, JumpThreshold, Time
-from aionode.endpoints.core.entity import Entity
+from aionode.endpoints.core.entity import Entity, end_of_wait, refuse_if_destroyed
 from aionode.endpoints.core.node_core import core_of
 from aionode.errors import TimeoutException, TransformException
 from aionode.tf._arithmetic import unit
@@ -90,7 +90,7 @@ class NodeBufferCore(BufferCore):
         look_up: Callable[[], TransformStamped],
         timeout_sec: float | None,
     ) -> TransformStamped:
-        self._BufferCore__entity._refuse_if_destroyed("wait for a transform")
+        refuse_if_destroyed(self._BufferCore__entity, "wait for a transform")
         self._BufferCore__expect_names(*(frame for part in parts for frame in part[:2]))
         ended: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         # The answer is taken at once, as the data may be gone by the time the task runs.
@@ -113,7 +113,7 @@ class NodeBufferCore(BufferCore):
             if alarm is not None:
                 alarm.cancel()
         if result is DESTROYED:
-            raise self._BufferCore__entity._end_of_wait()
+            raise end_of_wait(self._BufferCore__entity)
         if result is TIMED_OUT:
             raise TimeoutException(f"{self._BufferCore__reason(parts)}; waited {timeout_sec:g} s")
         return result  # type: ignore[no-any-return]  # a future has a single type

@@ -34,9 +34,21 @@ from aionode.tf._velocity import velocity
 from aionode.tf._walk import Failure, Walk, latest_common_ns, walk
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from aionode.tf._velocity import Vector, Velocity
 
-__all__ = ["CACHE_TIME_SEC", "MAX_FRAMES", "MAX_NAME", "BufferCore", "duration_ns", "time_ns_of"]
+__all__ = [
+    "CACHE_TIME_SEC",
+    "MAX_FRAMES",
+    "MAX_NAME",
+    "BufferCore",
+    "authorities_of",
+    "duration_ns",
+    "frames_of",
+    "rivals_of",
+    "time_ns_of",
+]
 
 CACHE_TIME_SEC = 10.0
 """How long transforms are kept by default, in seconds."""
@@ -565,6 +577,21 @@ class BufferCore:
             source,
             whole(vector(x, y, z), turn(i, j, k, w)),
         )
+
+
+def frames_of(core: BufferCore) -> Tree:
+    """Return the frames of a buffer by name."""
+    return core._BufferCore__frames
+
+
+def authorities_of(core: BufferCore) -> Mapping[str, str]:
+    """Return who sent the newest transform of each frame."""
+    return core._BufferCore__authorities
+
+
+def rivals_of(core: BufferCore) -> Mapping[str, str]:
+    """Return who sent the transforms of a frame before its authority, if that was another."""
+    return core._BufferCore__rivals
 
 
 PARTS: tuple[Any, ...] = (Header, TimeMsg, Transform, Vector3, Quaternion)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.message import ActionClass
 
-__all__ = ["ActionClient"]
+__all__ = ["ActionClient", "send_for_others"]
 
 T = TypeVar("T")
 GoalT = TypeVar("GoalT", bound=Message)
@@ -661,3 +661,16 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         for part in self._parts:
             if part not in needed:
                 part.destroy()
+
+
+def send_for_others(
+    client: ActionClient[Any, Any, Any], tell_goes_on: Callable[[str], None]
+) -> None:
+    """Mark the goals of a client as those of others, who may be lost while it stays.
+
+    Args:
+        client: The action client, such as one of a gateway; see `lost_id`.
+        tell_goes_on: Called with the id of a goal whose server refuses to cancel it.
+    """
+    client._sends_for_others = True
+    client._tell_goes_on = tell_goes_on

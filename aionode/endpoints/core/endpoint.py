@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from aionode.engine.context import Context
     from aionode.graph import EndpointInfo
 
-__all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
+__all__ = ["Endpoint", "EndpointSetup", "info_of", "report_heavy", "watch_opposite"]
 
 
 class EndpointSetup(Struct, frozen=True):
@@ -121,3 +121,16 @@ class Endpoint(Entity):
             if self.destroyed:
                 raise self._end_of_wait()
             await self._graph.changed(self._endpoint.name)
+
+
+def info_of(endpoint: Endpoint) -> EndpointInfo:
+    """Return the entry of an endpoint in the graph."""
+    return endpoint._endpoint
+
+
+def watch_opposite(endpoint: Endpoint, watcher: Callable[[EndpointInfo, bool], None]) -> None:
+    """Call `watcher` with each opposite endpoint of its name and whether it is present.
+
+    Lasts until the endpoint is destroyed; known endpoints are reported at once.
+    """
+    endpoint._watch(watcher)

@@ -1,6 +1,7 @@
 """The base of all entities of a node: an owner, a task, and an end.
 
-Names with an underscore are for the node and subclasses; the rest is for users.
+Names with an underscore are for the node and subclasses, and the functions for other parts of
+aionode; the rest is for users.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.core.node_tasks import NodeTasks
     from aionode.engine.loop_affinity import LoopAffinity
 
-__all__ = ["EndStage", "Entity"]
+__all__ = ["EndStage", "Entity", "end_lease", "end_of_wait", "refuse_if_destroyed"]
 
 
 class EndStage(IntEnum):
@@ -133,3 +134,18 @@ class Entity:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:
             raise self._destroyed_error(action)
+
+
+def refuse_if_destroyed(entity: Entity, action: str = "") -> None:
+    """Raise EntityDestroyedError after `destroy`."""
+    entity._refuse_if_destroyed(action)
+
+
+def end_of_wait(entity: Entity) -> asyncio.CancelledError | EntityDestroyedError:
+    """Return the exception for the current task, whose wait was ended by `destroy`."""
+    return entity._end_of_wait()
+
+
+def end_lease(entity: Entity, refusal: Callable[[], Exception]) -> None:
+    """Send the stop of an open lease; its `publish` then raises what `refusal` returns."""
+    entity._end_lease(refusal)

@@ -65,6 +65,15 @@ def is_named(node: object) -> bool:
     return hasattr(node, "_aionode__core")
 
 
+class NodeClock(ROSClock):
+    """The clock of a node; the node's end ends sleeps like its other waits."""
+
+    _node_tasks: NodeTasks
+
+    def _end_of_wait(self) -> BaseException:
+        return self._node_tasks.end_of_wait(repr(self))
+
+
 class NodeCore:
     """A node's state, start and end, which the methods of `aionode.Node` use.
 
@@ -145,8 +154,8 @@ class NodeCore:
         self.running = False
         self.ending = asyncio.Event()
         self.record = EndRecord(f"node {full_name}")
-        self.clock = ROSClock(time_base=context.time_base)
-        self.clock._end_of_wait = self.tasks.end_of_wait
+        self.clock = NodeClock(time_base=context.time_base)
+        self.clock._node_tasks = self.tasks
         self.logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=context.time_base.system_ns
         )

@@ -48,9 +48,10 @@ class GoalOwners:
 
     def create_action_client(self, action_type: Any, action: str) -> Any:
         """Return a client of an action that sends goals for others."""
+        from aionode.endpoints.actions.client import send_for_others  # few clients send goals
+
         client = self._node.create_action_client(action_type, action)
-        client._sends_for_others = True
-        client._tell_goes_on = partial(self._tell_goes_on, action)
+        send_for_others(client, partial(self._tell_goes_on, action))
         return client
 
     def new_goal(self, identity: Identity, way: str) -> Any:

@@ -164,7 +164,8 @@ class LaunchContext:
 
     def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
         """Register a handler."""
-        self.steps.append(Watch(handler=event_handler, context=self.fork()))
+        known = event_handler._BaseEventHandler__known_entities()
+        self.steps.append(Watch(event_handler, self.fork(), known))
 
     def unregister_event_handler(self, event_handler: Any) -> None:
         """Unregister a handler."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from launch.launch_context import LaunchContext
 
-__all__ = ["LaunchDescriptionEntity"]
+__all__ = ["LaunchDescriptionEntity", "set_where", "where_of"]
 
 
 class LaunchDescriptionEntity:
@@ -34,3 +34,13 @@ class LaunchDescriptionEntity:
 
     def get_asyncio_future(self) -> None:
         """Return None: the engine tracks what is running."""
+
+
+def where_of(entity: LaunchDescriptionEntity) -> str:
+    """Return the file and line where the program created an entity."""
+    return entity._LaunchDescriptionEntity__where
+
+
+def set_where(entity: LaunchDescriptionEntity, where: str) -> None:
+    """Set the file and line of an entity that a file in XML or YAML describes."""
+    entity._LaunchDescriptionEntity__where = where

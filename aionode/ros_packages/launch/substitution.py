@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 if TYPE_CHECKING:
@@ -14,6 +14,7 @@ __all__ = [
     "SubstitutionFailure",
     "TextSubstitution",
     "normalize_to_list_of_substitutions",
+    "of_words",
     "perform_substitutions",
     "text_of",
 ]
@@ -43,6 +44,11 @@ class Substitution:
         if cls._Substitution__second_word and len(words) == 2:
             return cls(words[0], **{cls._Substitution__second_word: words[1]})  # type: ignore[call-arg]  # the subclass has it
         return cls(*words)
+
+
+def of_words(kind: type[Substitution]) -> Callable[..., Substitution]:
+    """Return the function that makes a substitution of the words of ``$(name word word)``."""
+    return kind._Substitution__of_words
 
 
 class TextSubstitution(Substitution):

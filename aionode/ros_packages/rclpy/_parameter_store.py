@@ -30,6 +30,10 @@ class NodeParameterStore(ParameterStore):
     messages = msg
     type_text = "{0:d}".format
 
+    def tables(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return the parameters and their descriptors by name, which programs of rclpy read."""
+        return self._parameters, self._descriptors
+
     def _own_descriptor(self, given: Any, index: int) -> Any:
         """Return a copy of a descriptor, which may be of aionode's class."""
         if type_of(given) == "rcl_interfaces/msg/ParameterDescriptor":

@@ -67,7 +67,7 @@ class Clock(ClockHandle):
 
     def now(self) -> Time:
         """Return the time."""
-        return Time(nanoseconds=self.now_ns(), clock_type=self._clock_type)
+        return Time(nanoseconds=self.now_ns(), clock_type=self.clock_type)
 
     def sleep_until(self, until: core.Time, context: Context | None = None) -> bool:  # type: ignore[override] # blocks
         """Block the thread until the clock shows `until`, or the context is shut down.
@@ -89,7 +89,7 @@ class Clock(ClockHandle):
         context = get_default_context() if context is None else context
         if not context.ok() or context.handle is None:
             raise NotInitializedException
-        if until.clock_type != self._clock_type:
+        if until.clock_type != self.clock_type:
             raise ValueError("until's clock type does not match this clock's type")
         wakeup = Wakeup()
         switched = False
@@ -112,7 +112,7 @@ class Clock(ClockHandle):
                     timeout_sec = None
                     if not self.ros_time_is_active:
                         timeout_sec = left_ns / 1e9
-                        if self._clock_type is not ClockType.STEADY_TIME:
+                        if self.clock_type is not ClockType.STEADY_TIME:
                             timeout_sec = min(timeout_sec, LONGEST_STEP_S)
                     wakeup.wait(timeout_sec)
         finally:

@@ -239,8 +239,7 @@ class Node(ParameterMethods, GraphQueries):
         self._Node__parameter_store = store
         # Programs of rclpy read these.
         self._allow_undeclared_parameters = allow_undeclared_parameters
-        self._parameters = store._parameters
-        self._descriptors = store._descriptors
+        self._parameters, self._descriptors = store.tables()
         self._parameter_overrides = store.overrides
         self._pre_set_parameters_callbacks = store.callbacks.pre
         self._on_set_parameters_callbacks = store.callbacks.on

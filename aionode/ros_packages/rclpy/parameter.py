@@ -135,7 +135,7 @@ class Parameter(core.Parameter, Generic[AllowableParameterValueT]):
     @property
     def type_(self) -> Any:
         """The type."""
-        return self._type
+        return super().type_
 
     def get_parameter_value(self) -> Any:
         """Return type and value as a message."""

@@ -113,10 +113,12 @@ def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
 
 def two_broadcasters(buffer: Buffer) -> Iterator[Finding]:
     """Yield a finding for each frame that two nodes publish."""
-    for frame, rival in buffer._BufferCore__rivals.items():
+    from aionode.tf.buffer_core import authorities_of, rivals_of  # as above
+
+    for frame, rival in rivals_of(buffer).items():
         yield Finding(
             "hint",
             frame,
-            f"{rival} and {buffer._BufferCore__authorities[frame]} both publish its transform",
+            f"{rival} and {authorities_of(buffer)[frame]} both publish its transform",
             "stop one of them, or rename its frame",
         )

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from aionode.tf.buffer_core import authorities_of, frames_of
 from aionode.tf.frame_listing import rate_of
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
         now_ns: The current time, from which ages are computed.
     """
     edges = []
-    for name, frame in sorted(core._BufferCore__frames.items()):
+    for name, frame in sorted(frames_of(core).items()):
         latest = frame.latest()
         if latest is None:
             continue
@@ -71,7 +72,7 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
                 child=name,
                 parent=latest[1],
                 static=static,
-                broadcaster=core._BufferCore__authorities.get(name, ""),
+                broadcaster=authorities_of(core).get(name, ""),
                 rate_hz=0.0 if static or len(frame) < 2 else rate_of(frame),
                 age_sec=0.0 if static else (now_ns - latest[0]) / 1e9,
             )

@@ -117,10 +117,16 @@ class TimerAction(Action):
         """Cancel the timer, unless it has already fired."""
         self._TimerAction__is_canceled = True
 
+    def _TimerAction__canceled(self) -> bool:
+        """Return whether it was cancelled."""
+        return self._TimerAction__is_canceled
+
     def execute(self, context: LaunchContext) -> None:
         """Start to wait."""
         period = self.period
         if not isinstance(period, int | float):
             period = text_of(context, period)
         later = context.fork()
-        context.steps.append(Timer(self, float(period), self.actions, later))
+        context.steps.append(
+            Timer(self, float(period), self.actions, later, self._TimerAction__canceled)
+        )

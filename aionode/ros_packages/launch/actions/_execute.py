@@ -146,6 +146,9 @@ class ExecuteLocal(Action):
                 respawn_max_retries=self._ExecuteLocal__respawn_max_retries,
                 output=self._ExecuteLocal__output(context),
                 **self._ExecuteLocal__limits(context),
+                on_output=self._ExecuteLocal__note_output
+                if self._ExecuteLocal__cached_output
+                else None,
                 emulate_tty=self._ExecuteLocal__emulates_tty(context),
                 autostart=self._ExecuteLocal__autostarts(context),
             )

@@ -228,7 +228,7 @@ class OpaqueCoroutine(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Mark it to be run."""
-        context.steps.append(Call(self, context.fork()))
+        context.steps.append(Call(self, context.fork(), self._OpaqueCoroutine__call))
 
     async def _OpaqueCoroutine__call(self, context: LaunchContext) -> None:
         """Run the coroutine to its end."""
