@@ -23,6 +23,10 @@ SOON = "import aionode._process.signals; aionode._process.signals.SAME_SEC = 0.0
 """A second signal is one at once, to keep tests short."""
 
 WAITS_FOR_EVER = """
+from aionode.endpoints.core import shutdown
+
+shutdown.NOTICE_S = shutdown.CALLBACKS_S  # a busy machine makes the end long enough for a log line
+
 async def callback(msg):
     try:
         print("ready", flush=True)
