@@ -23,6 +23,7 @@ from hypothesis.internal.conjecture import providers
 from aionode import rclpy
 from aionode.node import Node
 from tests.bytecode import share_bytecode
+from tests.shares import Share, Shares
 from tests.support.checking_loop import CheckingLoop
 
 if TYPE_CHECKING:
@@ -94,6 +95,12 @@ PROCESSES = (
 )
 """Files and folders whose tests start processes; they take long, so workers begin with some."""
 
+
+def starts_processes(nodeid: str) -> bool:
+    """Return whether a test or a file of tests is one of `PROCESSES`."""
+    return nodeid.startswith(PROCESSES)
+
+
 BOTH_LOOPS = (
     "tests/clock/",
     "tests/endpoints/core/",
@@ -146,6 +153,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if config.option.dist == "no":
         config.option.dist = "loadfile"
         config.option.loadscopereorder = False
+        if config.args == config.getini("testpaths"):
+            config.pluginmanager.register(Shares())
     if not is_compiled(Path(__file__).with_name("test_exports.py")):
         compile_once(config.args)
 
@@ -178,6 +187,10 @@ def pytest_configure(config: pytest.Config) -> None:
     """
     if not config.getoption("--hypothesis-profile") and hasattr(providers, "_get_local_constants"):
         providers._get_local_constants = lambda: providers._local_constants
+    workerinput: dict[str, Any] = getattr(config, "workerinput", {})  # of pytest-xdist
+    if "share" in workerinput:
+        number, count = workerinput["share"]
+        config.pluginmanager.register(Share(number, count, starts_processes))
     options = config.option
     if options.verbose < 0 and not options.durations and not options.xmlpath:
         for plugin in config.pluginmanager.get_plugins():
@@ -230,7 +243,7 @@ def pytest_sessionfinish() -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Limit the time of async tests; mark those of processes, and those that one loop covers."""
     for item in items:
-        if item.nodeid.startswith(PROCESSES):
+        if starts_processes(item.nodeid):
             item.add_marker("processes")
         if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
             marker = item.get_closest_marker("timeout")
@@ -255,7 +268,7 @@ def mix(items: list[pytest.Item]) -> None:
     counts = {True: 0, False: 0}
     for item in items:
         if item.path not in places:
-            waits = item.nodeid.startswith(PROCESSES)
+            waits = starts_processes(item.nodeid)
             places[item.path] = (counts[waits], not waits)
             counts[waits] += 1
     items.sort(key=lambda item: places[item.path])
@@ -296,7 +309,7 @@ def pytest_asyncio_loop_factories(
         left_out = ""
     elif "not second_loop" in expression:
         left_out = "uvloop"
-    elif item.nodeid.startswith(PROCESSES) or item.get_closest_marker("processes"):
+    elif starts_processes(item.nodeid) or item.get_closest_marker("processes"):
         left_out = ""
     else:
         left_out = "asyncio" if "not first_loop" in expression else ""
