@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import zenoh
 
+from aionode._process.stopped import is_stopped
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Transport
 from aionode.engine.transport.drops import Drop, Drops
+from aionode.engine.transport.network import pid_of
 from aionode.engine.transport.zenoh._defects.closing import cut_stuck
 from aionode.engine.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_gossip_source
 from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
@@ -21,7 +23,11 @@ from aionode.engine.transport.zenoh._defects.stale_transports import StaleTransp
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.connections.sockets import arrived_bytes, pair_of
 from aionode.engine.transport.zenoh.connections.stopped_peers import StoppedPeers
-from aionode.engine.transport.zenoh.discovery.graph_watcher import NodeDeclaration, Watcher
+from aionode.engine.transport.zenoh.discovery.graph_watcher import (
+    NodeDeclaration,
+    Watcher,
+    participant_of,
+)
 from aionode.engine.transport.zenoh.discovery.observed import Observed
 from aionode.engine.transport.zenoh.discovery.other_domains import other_domains
 from aionode.engine.transport.zenoh.discovery.peer_directory import ZenohPeerDirectory
@@ -42,6 +48,7 @@ if TYPE_CHECKING:
     import socket
     from collections import Counter
     from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Set as AbstractSet
 
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
@@ -200,12 +207,17 @@ class ZenohTransport(Transport):
         self._state.graph_is_known()
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until the tokens of all reachable peers are in the graph."""
+        """Wait until the tokens of all reachable peers are in the graph.
+
+        Processes of this machine that are stopped are not waited for: they do not answer.
+        """
         session, graph = self._state.session, self._state.graph
         if session is None or graph is None:
             return False
         if not self._is_connected():  # on a busy machine that takes longer than `open` waits
-            await self._state.connections.wait_longer(self._is_connected, quiet_s)
+            stopped = await run_in_own_thread(self._stopped_ports)
+            is_enough = partial(self._is_connected, stopped)
+            await self._state.connections.wait_longer(is_enough, quiet_s)
             self._ask(session)
         if not await self._has_answers(session, quiet_s):
             return False
@@ -216,7 +228,7 @@ class ZenohTransport(Transport):
             return missing is not None and self._is_connected()
         quiet_ns = int(quiet_s * 1e9)
         ends_ns = perf_ns() + NAMED_NS
-        while missing:
+        while not all(map(is_of_stopped_process, missing)):
             with suppress(TimeoutError):
                 async with asyncio.timeout(ASK_AGAIN_S):
                     await graph.until(partial(known_all, self._watcher, missing))
@@ -229,11 +241,23 @@ class ZenohTransport(Transport):
                 return False
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
-        return await self._has_answers(session, quiet_s) and self._is_connected()
+        has_answers = await self._has_answers(session, quiet_s)
+        return has_answers and not missing and self._is_connected()
 
-    def _is_connected(self) -> bool:
-        """Return whether all peers that accept connections have been connected."""
-        return len(self._state.connections.kinds) >= self._expected and not self._silent_ports()
+    def _is_connected(self, besides: AbstractSet[int] = frozenset()) -> bool:
+        """Return whether all peers that accept connections have been connected.
+
+        Args:
+            besides: The ports of sessions that need not be.
+        """
+        silent = self._silent_ports()
+        count = len(self._state.connections.kinds) + len(silent & besides)
+        return count >= self._expected and silent <= besides
+
+    def _stopped_ports(self) -> set[int]:
+        """Return the ports of this machine's sessions whose processes are stopped."""
+        found = processes(self.network.meeting_ports[0])
+        return {port for port, process in found.items() if process.is_stopped}
 
     def _silent_ports(self) -> set[int]:
         """Return the ports of those sessions of this machine that were dialled in vain.
@@ -365,6 +389,12 @@ class ZenohTransport(Transport):
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
         """Declare a client."""
         return ZenohRequester(self._state, endpoint, srv_type)
+
+
+def is_of_stopped_process(key: str) -> bool:
+    """Return whether the process that has declared a token is known to be stopped."""
+    pid = pid_of(participant_of(key))
+    return pid is not None and is_stopped(pid)
 
 
 def known_all(watcher: Watcher, keys: set[str]) -> bool:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import signal
+import subprocess
+import sys
 from collections.abc import AsyncIterator
 from itertools import count
 from types import SimpleNamespace
@@ -12,7 +16,21 @@ import pytest
 
 from aionode.engine.transport.zenoh import _transport
 from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.connections import stopped_peers
+from tests.support.fork_server import start
 from tests.support.peers import quiet_node
+
+STOPPED = """
+import asyncio
+from tests.support.peers import quiet_node
+
+async def main():
+    async with quiet_node("stopped"):
+        print("there", flush=True)
+        await asyncio.Event().wait()
+
+asyncio.run(main())
+"""
 
 QUIET_S = 0.02
 ENOUGH = 20
@@ -72,3 +90,27 @@ async def test_an_answer_that_zenoh_has_given_up_is_incomplete(transport: ZenohT
     transport._ask(session)
 
     assert not await transport.all_known(QUIET_S)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
+async def test_a_stopped_process_is_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not for its connection, and not for the nodes that others still know; others do answer."""
+    monkeypatch.setattr(_transport, "NAMED_NS", 60 * 10**9)
+    monkeypatch.setattr(stopped_peers, "LOOKS", 60)  # nobody gives it up meanwhile
+    streams: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    program = ["-c", STOPPED]
+    with start(program, env=os.environ, stdout=subprocess.PIPE, **streams) as process:
+        assert process.stdout is not None
+        await asyncio.to_thread(process.stdout.readline)
+        try:
+            async with asyncio.timeout(20), quiet_node("other") as other:
+                await other.wait_for_node("/stopped")
+                process.send_signal(signal.SIGSTOP)
+                async with quiet_node("asking") as node:
+                    known = await node.context.transports[1].all_known(60.0)
+                    nodes = node.get_node_names()
+        finally:
+            process.kill()
+
+    assert not known
+    assert "other" in nodes

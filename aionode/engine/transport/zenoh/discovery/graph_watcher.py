@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
 
-__all__ = ["NodeDeclaration", "Watcher"]
+__all__ = ["NodeDeclaration", "Watcher", "participant_of"]
 
 CHECK_S: Final = 2.0
 """Timeout for the tokens of others, in seconds; they take a millisecond."""
