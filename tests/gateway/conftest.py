@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable
+from typing import TYPE_CHECKING
 
 import pytest
 
 from aionode.gateway.session.robot import Robot
 from aionode.node import Node
 from aionode.testing import settle
-from tests.support import mcp_bench
 from tests.support.gateway_bench import Bench, bench_of_gateway
 from tests.support.rosbridge import RosbridgeClient, robot_of, rosbridge_client
+
+if TYPE_CHECKING:
+    from tests.support.mcp_bench import Bench as AssistedBench
 
 Make = Callable[..., Node]
 
@@ -49,9 +52,11 @@ async def bench() -> AsyncIterator[Bench]:
 
 
 @pytest.fixture(params=["in process", "http"])
-async def assisted(request: pytest.FixtureRequest) -> AsyncIterator[mcp_bench.Bench]:
+async def assisted(request: pytest.FixtureRequest) -> AsyncIterator[AssistedBench]:
     """Yield a robot with an assistant, whose clients are in this process or use HTTP."""
-    async with mcp_bench.bench_of(over_http=request.param == "http") as bench:
+    from tests.support.mcp_bench import bench_of  # takes a second, which other tests need not
+
+    async with bench_of(over_http=request.param == "http") as bench:
         yield bench
 
 

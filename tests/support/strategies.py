@@ -118,8 +118,9 @@ def parts_of(cls: Any) -> Iterator[type[Message]]:
 
 def any_messages(*, nan: bool = False) -> st.SearchStrategy[Any]:
     """Return a strategy for messages of any class; see `messages`."""
-    classes = list(message_classes().values())
-    return st.sampled_from(classes).flatmap(lambda cls: messages(cls, nan=nan))
+    # Only a test that runs imports all classes.
+    classes = st.deferred(lambda: st.sampled_from(list(message_classes().values())))
+    return classes.flatmap(lambda cls: messages(cls, nan=nan))
 
 
 @cache  # hypothesis takes longer to make a strategy than to draw from it
