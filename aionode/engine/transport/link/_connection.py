@@ -540,8 +540,12 @@ class Connection:
 
     def _release_soon(self, number: int) -> None:
         """Release a buffer of the other process; called on any thread, within any other call."""
+        call_soon = self._loop.call_soon_threadsafe
+        with suppress(RuntimeError):  # in another thread
+            if asyncio.get_running_loop() is self._loop:
+                call_soon = self._loop.call_soon  # without a system call to wake it
         with suppress(RuntimeError):  # the loop is closed, and so is the socket
-            self._loop.call_soon_threadsafe(self.send, Release(number))
+            call_soon(self.send, Release(number))
 
     def _on_release(self, number: int) -> None:
         buffer = self.lent.pop(number, None)

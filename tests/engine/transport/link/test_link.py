@@ -24,7 +24,7 @@ from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.link import _listener as listener
 from aionode.engine.transport.link import _subscription as subscription
 from aionode.engine.transport.link._continuation import seal
-from aionode.engine.transport.link._protocol import Kind, RetransmitDone
+from aionode.engine.transport.link._protocol import Kind, Release, RetransmitDone
 from aionode.engine.transport.link._subscription import LinkReader
 from aionode.engine.transport.link._transport import LinkTransport
 from aionode.engine.wire import cdr
@@ -545,6 +545,36 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
         last = await subscription.receive()
         assert memory_files() == files
         assert bytes(last.data[:1]) == bytes([7])
+
+
+@pytest.mark.parametrize("wakes", [False, True], ids=["in the loop", "in another thread"])
+async def test_memory_is_released_where_the_last_reference_is_dropped(
+    monkeypatch: pytest.MonkeyPatch, *, wakes: bool
+) -> None:
+    """The loop is woken by other threads only: it takes a system call, for each image."""
+    loop = asyncio.get_running_loop()
+    soon = loop.call_soon_threadsafe
+    woken: list[tuple[Any, ...]] = []
+
+    def call_soon(callback: Any, *args: Any, **options: Any) -> Any:
+        woken.append(args)
+        return soon(callback, *args, **options)
+
+    async with two_nodes() as nodes:
+        publisher, subscription = await linked_images(nodes)
+        publisher.publish(image(1))
+        kept = [await subscription.receive()]
+        lent = link_of(nodes.a).lent
+        number = next(iter(lent))
+        monkeypatch.setattr(loop, "call_soon_threadsafe", call_soon)
+        if wakes:
+            await asyncio.to_thread(kept.clear)
+        else:
+            kept.clear()
+        while lent:
+            await checkpoint()
+
+    assert ((Release(number),) in woken) is wakes
 
 
 async def test_without_descriptors_large_payloads_go_through_the_stream(
