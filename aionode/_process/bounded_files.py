@@ -7,9 +7,9 @@ import os
 import stat
 from typing import Final
 
-__all__ = ["LARGEST_FILE", "LFS_POINTER", "is_lfs_pointer", "read_file"]
+__all__ = ["LFS_POINTER", "MAX_FILE", "is_lfs_pointer", "read_file"]
 
-LARGEST_FILE: Final = 16 << 20
+MAX_FILE: Final = 16 << 20
 """The largest file that is read at once, in bytes."""
 
 PIECE: Final = 64 << 10
@@ -29,7 +29,7 @@ pipes.
 """
 
 
-def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
+def read_file(path: str | os.PathLike[str], most: int = MAX_FILE) -> bytes:
     """Read a configuration file.
 
     A pipe without a writer would block forever, and a device may have no end.

@@ -11,7 +11,7 @@ import os
 from typing import Any, Final
 
 __all__ = [
-    "LARGEST_TEXT",
+    "MAX_TEXT",
     "MAX_VALUES",
     "VALUES_VARIABLE",
     "checked_yaml",
@@ -23,7 +23,7 @@ __all__ = [
     "value_of_node",
 ]
 
-LARGEST_TEXT: Final = 8 << 20
+MAX_TEXT: Final = 8 << 20
 """Maximum size of a text, in bytes."""
 
 MAX_VALUES: Final = 80_000
@@ -33,8 +33,8 @@ to."""
 VALUES_VARIABLE: Final = "AIONODE_YAML_VALUES"
 """The environment variable that sets another limit."""
 
-DEEPEST: Final = 100
-LONGEST_NUMBER: Final = 400
+MAX_DEPTH: Final = 100
+MAX_NUMBER: Final = 400
 """Maximum length of a number, because parsing base 60 takes quadratic time."""
 
 FROM_CONSTRUCTORS: Final = (
@@ -58,8 +58,8 @@ def checked_yaml(text: str | bytes) -> None:
     """Raise `yaml.YAMLError` if a text is not YAML or exceeds the limits."""
     import yaml
 
-    if len(text) > LARGEST_TEXT:
-        problem = f"{len(text)} bytes; at most {LARGEST_TEXT} are read"
+    if len(text) > MAX_TEXT:
+        problem = f"{len(text)} bytes; at most {MAX_TEXT} are read"
         raise yaml.MarkedYAMLError(problem=problem)
     seen = Seen()
     try:
@@ -101,8 +101,8 @@ class Seen:
                 f"more than {self.most} values, counting the values of each alias; "
                 f"{VALUES_VARIABLE} raises the limit"
             )
-        elif len(self.open) > DEEPEST:
-            what = f"values nested deeper than {DEEPEST}"
+        elif len(self.open) > MAX_DEPTH:
+            what = f"values nested deeper than {MAX_DEPTH}"
         else:
             return
         raise yaml.MarkedYAMLError(problem=what, problem_mark=event.start_mark)
@@ -124,7 +124,7 @@ def expect_short(event: Any) -> None:
     may_be_number = value[:1] in set("+-.0123456789") and (
         not event.style or (event.tag or "").endswith((":int", ":float"))
     )
-    if len(value) > LONGEST_NUMBER and may_be_number and " " not in value:
+    if len(value) > MAX_NUMBER and may_be_number and " " not in value:
         problem = f"a number of {len(value)} characters"
         raise yaml.MarkedYAMLError(problem=problem, problem_mark=event.start_mark)
 

@@ -42,16 +42,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextvars import Context
 
-__all__ = ["LONGEST_WAIT_S", "LendableLoop", "Readers"]
+__all__ = ["MAX_WAIT_S", "LendableLoop", "Readers"]
 
-LONGEST_WAIT_S = 1.0
+MAX_WAIT_S = 1.0
 """Longest wait of one system call, in seconds, for a lock or for descriptors.
 
 Python handles signals between two bytecodes of the main thread. One that comes just before the
 system call, or in another thread, does not end it, and is handled only after it.
 """
 
-LONGEST_END_S = 1.0
+MAX_END_S = 1.0
 """How long closing a loop waits for the thread that polls in its place."""
 
 Ts = TypeVarTuple("Ts")
@@ -213,14 +213,12 @@ class Readers:
 
         Args:
             timeout_s: The longest wait in seconds, None for no limit; it returns after
-                `LONGEST_WAIT_S` in any case.
+                `MAX_WAIT_S` in any case.
 
         Returns:
             The argument for `call`; empty after a timeout.
         """
-        return self._epoll.poll(
-            LONGEST_WAIT_S if timeout_s is None else min(timeout_s, LONGEST_WAIT_S)
-        )
+        return self._epoll.poll(MAX_WAIT_S if timeout_s is None else min(timeout_s, MAX_WAIT_S))
 
     def call(self, readable: list[tuple[int, int]]) -> bool:
         """Borrow the loop and call the callbacks of these descriptors.
@@ -299,7 +297,7 @@ class Readers:
     def _close(self) -> None:
         self._closing = True
         self.rouse()
-        if self._waiting.acquire(timeout=LONGEST_END_S):
+        if self._waiting.acquire(timeout=MAX_END_S):
             self._epoll.close()
             self._gate.close()
             self._is_gone = True  # before the check: `rouse` checks in the opposite order

@@ -63,14 +63,14 @@ MINUS_INFINITY = {"-.inf", "-.Inf", "-.INF"}
 NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
 
 # rcl reads numbers by C's strtoll with base 0 and strtod; these patterns accept the same.
-LONGEST_INTEGER = 100  # digits: far more than 64 bits need, far fewer than Python refuses
+MAX_INTEGER = 100  # digits: far more than 64 bits need, far fewer than Python refuses
 INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
 DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
 SIGNIFICANT = r"(?i)^[+-]?(?:0x[0.]*[1-9a-f]|[0.]*[1-9])"
 WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
-DEEPEST = 100  # nested mappings: more parts than any name has, few enough for Python's stack
+MAX_DEPTH = 100  # nested mappings: more parts than any name has, few enough for Python's stack
 
 NODE_PART = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
 
@@ -117,7 +117,7 @@ def parse_scalar(text: str) -> bool | int | float | str:
     """Return the value that rcl gives to a scalar without quotes."""
     if text in TRUE or text in FALSE:
         return text in TRUE
-    if re.fullmatch(INTEGER, text) and len(text) < LONGEST_INTEGER:
+    if re.fullmatch(INTEGER, text) and len(text) < MAX_INTEGER:
         number = int(text, 0) if "x" in text.lower() else int(text, 8 if is_octal(text) else 10)
         if -(2**63) <= number < 2**63:
             return number
@@ -248,8 +248,8 @@ class Events:
         if event is None or type(event).__name__ != f"{kind}Event":
             self.fail(f"{describe(event)} where a {kind.lower()} was expected")
         self.depth += {"MappingStart": 1, "MappingEnd": -1}.get(kind, 0)
-        if self.depth > DEEPEST:
-            self.fail(f"nested deeper than {DEEPEST}")
+        if self.depth > MAX_DEPTH:
+            self.fail(f"nested deeper than {MAX_DEPTH}")
         self.left -= kind == "Scalar"
         if self.left < 0:
             self.fail(f"more than {most_values()} values; {VALUES_VARIABLE} raises the limit")

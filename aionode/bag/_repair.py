@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Checked", "check", "reindex"]
 
 FIRST: Final = len(MAGIC) + HEAD.size
-LONGEST_HEADER: Final = 64
+MAX_HEADER: Final = 64
 """Upper limit of the length of the header, the first record of a file, in bytes."""
 
 UNKNOWN: Final = 0x80
@@ -159,7 +159,7 @@ def is_closed(file: Path) -> bool:
 def is_of_another_program(file: Path) -> bool:
     """Return whether a file names a writer that does not know our lock."""
     with file.open("rb") as stream:
-        begin = stream.read(LONGEST_HEADER)
+        begin = stream.read(MAX_HEADER)
     is_mcap = begin.startswith(MAGIC) and not has_hardly_begun(file)
     return is_mcap and LIBRARY.encode() not in begin
 
@@ -217,7 +217,7 @@ def pass_over(file: Path, at: int) -> None:
 def has_hardly_begun(file: Path) -> bool:
     """Return whether a file ends, or continues with zeros, before its first record is complete."""
     with file.open("rb") as stream:
-        begin = stream.read(LONGEST_HEADER).rstrip(b"\0")
+        begin = stream.read(MAX_HEADER).rstrip(b"\0")
         if not MAGIC.startswith(begin[: len(MAGIC)]):
             return False
         if len(begin) >= FIRST and len(begin) >= FIRST + HEAD.unpack_from(begin, len(MAGIC))[1]:

@@ -56,7 +56,7 @@ def thread_waited_ns() -> int | None:
 # early by at most the 1 ns they add for rounding. A remainder below SPIN_S is spent in iterations
 # of the loop, a longer one in another sleep, which is too long for uvloop to round to zero.
 SPIN_S = 50e-6
-SHORTEST_SLEEP_S = 1e-3
+MIN_SLEEP_S = 1e-3
 
 
 class Alarm(Protocol):
@@ -189,7 +189,7 @@ class LoopAlarm:
             self._callback()
             return
         left_s = left_ns / 1e9
-        delay_s = left_s if left_s <= SPIN_S else max(left_s, SHORTEST_SLEEP_S)
+        delay_s = left_s if left_s <= SPIN_S else max(left_s, MIN_SLEEP_S)
         self._handle = self._loop.call_later(delay_s, self._check)
 
     def cancel(self) -> None:

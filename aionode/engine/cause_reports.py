@@ -29,7 +29,7 @@ __all__ = [
     "encoded",
 ]
 
-LARGEST_REPORT: Final = 16 * 2**20
+MAX_REPORT: Final = 16 * 2**20
 """Maximum bytes of an answer of another process."""
 
 MAX_TOLD: Final = 200
@@ -265,7 +265,7 @@ def encoded(told: CauseQuestion | CauseReport) -> bytes:
 
 def decoded(data: bytes) -> CauseReport | None:
     """Return the answer of another process; None if this version cannot read it."""
-    if len(data) > LARGEST_REPORT:
+    if len(data) > MAX_REPORT:
         return None
     try:
         return REPORTS.decode(data)

@@ -33,7 +33,7 @@ __all__ = [
     "unchanging",
 ]
 
-LARGEST_REPORT: Final = 16 * 2**20
+MAX_REPORT: Final = 16 * 2**20
 """Maximum bytes of a report of another process."""
 
 MAX_TEXT: Final = 300
@@ -178,7 +178,7 @@ def encoded(report: ProcessReport) -> bytes:
 
 def decoded(data: bytes) -> ProcessReport | None:
     """Return the report of another process; None if this version cannot read it."""
-    if len(data) > LARGEST_REPORT:
+    if len(data) > MAX_REPORT:
         return None
     try:
         return DECODER.decode(data)

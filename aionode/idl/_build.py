@@ -16,7 +16,7 @@ from aionode.idl._definition import (
     split_type_name,
 )
 from aionode.idl._omg import messages_in
-from aionode.idl._parser import BUILTINS, LARGEST_TEXT, PRIMITIVES, parse
+from aionode.idl._parser import BUILTINS, MAX_TEXT, PRIMITIVES, parse
 from aionode.interfaces import get_interface, type_of
 from aionode.message import (
     ActionType,
@@ -30,7 +30,7 @@ from aionode.message import (
 
 __all__ = ["Builder", "define"]
 
-DEEPEST = 50
+MAX_DEPTH = 50
 """Maximum nesting depth of types."""
 
 MAX_MEMBERS = 10_000
@@ -81,8 +81,8 @@ def define(
     else:
         given = {**(uses or {}), typename: text}
         size = sum(map(len, given.values()))
-        if size > LARGEST_TEXT:
-            raise IdlError(typename, 0, 0, f"{size} characters; at most {LARGEST_TEXT} are read")
+        if size > MAX_TEXT:
+            raise IdlError(typename, 0, 0, f"{size} characters; at most {MAX_TEXT} are read")
         texts = {name: parse(name, used, recorded=recorded) for name, used in given.items()}
     builder = Builder(texts, reuse=reuse, recorded=recorded)
     builder.built.update(types or {})
@@ -113,8 +113,8 @@ class Builder:
             text = self.texts[typename]
             self.members = self.members if self.open else 0
             self.members += sum(len(part.members) for part in text.parts)
-            if len(self.open) >= DEEPEST or self.members > MAX_MEMBERS:
-                problem = f"types in types deeper than {DEEPEST}, or with more than {MAX_MEMBERS}"
+            if len(self.open) >= MAX_DEPTH or self.members > MAX_MEMBERS:
+                problem = f"types in types deeper than {MAX_DEPTH}, or with more than {MAX_MEMBERS}"
                 raise IdlError(text.file, 0, 0, f"{problem} fields in all")
             self.open.append(typename)
             try:

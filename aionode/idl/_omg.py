@@ -21,7 +21,7 @@ from aionode.idl._definition import (
     TypeText,
     split_type_name,
 )
-from aionode.idl._parser import LARGEST_TEXT, PRIMITIVES, checked, field_name, unescaped
+from aionode.idl._parser import MAX_TEXT, PRIMITIVES, checked, field_name, unescaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,10 +59,10 @@ PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 CONSTANTS: Final = "_Constants"
 """The suffix of the module that holds the constants of a structure."""
 
-DEEPEST: Final = 10
+MAX_DEPTH: Final = 10
 """Maximum nesting of modules; two levels are usual."""
 
-LONGEST_NUMBER: Final = 400
+MAX_NUMBER: Final = 400
 
 
 class Token(NamedTuple):
@@ -115,8 +115,8 @@ def messages_in(text: str, file: str, *, recorded: bool) -> dict[str, MessageTex
     Raises:
         IdlError: The text is not valid; the error names line and column.
     """
-    if len(text) > LARGEST_TEXT:
-        raise IdlError(file, 0, 0, f"{len(text)} characters; at most {LARGEST_TEXT} are read")
+    if len(text) > MAX_TEXT:
+        raise IdlError(file, 0, 0, f"{len(text)} characters; at most {MAX_TEXT} are read")
     try:
         reader = Reader(text, recorded=recorded)
         reader.definitions(())
@@ -194,8 +194,8 @@ class Reader:
 
     def definitions(self, scope: tuple[str, ...]) -> None:
         """Read the contents of a module, up to its end."""
-        if len(scope) > DEEPEST:
-            raise LineError(self._next.at, f"modules are nested deeper than {DEEPEST}")
+        if len(scope) > MAX_DEPTH:
+            raise LineError(self._next.at, f"modules are nested deeper than {MAX_DEPTH}")
         while self._next.kind != "end" and self._next.text != "}":
             if self._has(";"):
                 continue
@@ -400,7 +400,7 @@ def split(text: str) -> tuple[str, ...]:
 def number(word: Token) -> int | float:
     """Parse a number."""
     text = word.text
-    if len(text) > LONGEST_NUMBER:
+    if len(text) > MAX_NUMBER:
         raise LineError(word.at, f"a number of {len(text)} characters")
     if text[:2] in {"0x", "0X"}:
         return int(text.rstrip("lL"), 16)

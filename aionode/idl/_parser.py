@@ -25,7 +25,7 @@ from aionode.idl._definition import (
 )
 from aionode.message import DTYPES, FieldType, fit, fit_element
 
-__all__ = ["BUILTINS", "LARGEST_TEXT", "PRIMITIVES", "checked", "field_name", "parse", "unescaped"]
+__all__ = ["BUILTINS", "MAX_TEXT", "PRIMITIVES", "checked", "field_name", "parse", "unescaped"]
 
 PRIMITIVES = frozenset({*DTYPES, "byte", "string", "wstring"})
 BUILTINS = {
@@ -68,13 +68,13 @@ ESCAPED = {
 MAX_ELEMENTS = 2**32 - 1
 """Maximum bound of a sequence or string, whose length is encoded in 32 bits."""
 
-LARGEST_TEXT = 1 << 20
+MAX_TEXT = 1 << 20
 """Maximum characters of a definition; MoveIt's largest action has 100 000, with comments."""
 
 MAX_MEMBERS = 2_000
 """Maximum fields and constants of one message; the largest one of mavros has 200."""
 
-LARGEST_ARRAY = 2**26
+MAX_ARRAY = 2**26
 """Maximum elements of a fixed-size array, as each new message has all of them."""
 
 
@@ -93,8 +93,8 @@ def parse(typename: str, text: str, file: str = "", *, recorded: bool = False) -
     """
     file = file or typename
     names = HALVES[split_type_name(typename)[1]]
-    if len(text) > LARGEST_TEXT:
-        raise IdlError(file, 0, 0, f"{len(text)} characters; at most {LARGEST_TEXT} are read")
+    if len(text) > MAX_TEXT:
+        raise IdlError(file, 0, 0, f"{len(text)} characters; at most {MAX_TEXT} are read")
     parts = [Part()]
     for number, line in enumerate(text.split("\n"), 1):
         stripped = line.strip()
@@ -207,7 +207,7 @@ def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
     if match["upper"]:
         return TypeText(name, bound, "bounded", limit(size, at, "a size or bound", MAX_ELEMENTS))
     if size:
-        return TypeText(name, bound, "array", limit(size, at, "a size or bound", LARGEST_ARRAY))
+        return TypeText(name, bound, "array", limit(size, at, "a size or bound", MAX_ARRAY))
     return TypeText(name, bound, "unbounded")
 
 

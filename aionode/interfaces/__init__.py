@@ -66,7 +66,7 @@ PARTS = {
 }
 """The attribute of a service or an action that is a type, by the end of the type's name."""
 
-LONGEST_NAME = 300
+MAX_NAME = 300
 """Longer names get no suggestions, since a comparison takes time that grows with their length."""
 
 LISTED = r"(?ms)^__all__ = \[(.*?)\]"
@@ -282,7 +282,7 @@ def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
     import difflib  # for unknown names only
 
     packages = known_packages()
-    if len(name) > LONGEST_NAME:
+    if len(name) > MAX_NAME:
         return InterfaceNotFoundError(name)
     if len(parts) == 1:
         everything = interface_names()

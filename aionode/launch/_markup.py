@@ -15,7 +15,7 @@ from aionode.errors import LaunchFileError
 __all__ = ["Element", "read_xml", "read_yaml"]
 
 
-DEEPEST = 100
+MAX_DEPTH = 100
 """Maximum nesting of elements in XML; YAML has its own limit."""
 
 
@@ -49,8 +49,8 @@ def read_xml(path: str, text: bytes) -> Element:
         element = Element(name, f"{path}:{parser.CurrentLineNumber}", attributes)
         stack[-1].children.append(element)
         stack.append(element)
-        if len(stack) > DEEPEST:
-            problem = f"elements nested deeper than {DEEPEST}"
+        if len(stack) > MAX_DEPTH:
+            problem = f"elements nested deeper than {MAX_DEPTH}"
             raise LaunchFileError(path, problem, line=parser.CurrentLineNumber)
 
     def refuse(*_: object) -> None:

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from aionode.learn.contract import Action, Contract, Observation
 
 __all__ = [
-    "LONGEST_GAP",
+    "MAX_GAP",
     "Aligned",
     "aligned",
     "pictures_per_row",
 ]
 
-LONGEST_GAP: Final = 1.5
+MAX_GAP: Final = 1.5
 """Maximum periods between two rows of one episode."""
 
-LONGEST_SEC: Final = 2000.0
+MAX_SEC: Final = 2000.0
 """Maximum seconds of an episode: readers compare times, 32-bit floats, to within 0.1 ms."""
 
 ROUNDING_NS: Final = 1000
@@ -91,14 +91,14 @@ def aligned(contract: Contract, series: Sequence[Series]) -> Aligned:
     is_kept = ~np.logical_or.reduce(stale)
     kept = times[is_kept]
     steps = np.diff(kept)
-    is_gap = steps > LONGEST_GAP * period_ns
+    is_gap = steps > MAX_GAP * period_ns
     starts = [0, *(np.flatnonzero(is_gap) + 1).tolist()] if len(kept) else []
     return Aligned(
         kept,
         [chosen[is_kept] for chosen, _, _ in found],
         [ages[is_kept] for _, ages, _ in found],
         [values[is_kept] for _, _, values in found],
-        shortened(starts, len(kept), int(LONGEST_SEC * contract.fps)),
+        shortened(starts, len(kept), int(MAX_SEC * contract.fps)),
         len(times),
         [int(each.sum()) for each in stale],
         (steps[is_gap] / 1e9).tolist(),

@@ -48,7 +48,7 @@ EVERYTHING = 1  # not 0, which means the level of the root logger in `logging`
 MAX_LOGGERS = 1_000
 """From this number of loggers in the process on, other nodes cannot create more."""
 
-LONGEST_NAME = 256
+MAX_NAME = 256
 """Maximum length of a logger name requested by another node, as each part of it creates a logger as
 well.
 """
@@ -235,10 +235,10 @@ def set_logger_level_for_others(name: str, level: int) -> None:
             name is too long or there are too many already.
     """
     is_full = len(logging.Logger.manager.loggerDict) >= MAX_LOGGERS
-    if name and known_logger(name) is None and (is_full or len(name) > LONGEST_NAME):
+    if name and known_logger(name) is None and (is_full or len(name) > MAX_NAME):
         raise ValueError(
             f"there is no logger {brief(name)}; other nodes can create one with a name of "
-            f"{LONGEST_NAME} characters at most, and while there are fewer than {MAX_LOGGERS}"
+            f"{MAX_NAME} characters at most, and while there are fewer than {MAX_LOGGERS}"
         )
     set_logger_level(name, level)
 

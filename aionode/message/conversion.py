@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
-LONGEST_FIELD = 100
+MAX_FIELD = 100
 """Longer names get no suggestion, as comparing names takes time with their length."""
 
 MessageT = TypeVar("MessageT", bound=Message)
@@ -244,7 +244,7 @@ def no_such_field(cls: type[Message], key: str, names: list[str]) -> str:
 
     if not names:
         return f"no such field; {type_name(cls)} has no fields"
-    close = difflib.get_close_matches(key, names, 1) if len(key) <= LONGEST_FIELD else ()
+    close = difflib.get_close_matches(key, names, 1) if len(key) <= MAX_FIELD else ()
     meant = f"; did you mean {close[0]!r}?" if close else ""
     return f"no such field{meant}; {type_name(cls)} has {', '.join(names)}"
 

@@ -9,8 +9,8 @@ import msgspec
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.engine.cause_reports import (
-    LARGEST_REPORT,
     MAX_AT_ONCE,
+    MAX_REPORT,
     UNREADABLE,
     CauseReport,
     Key,
@@ -222,7 +222,7 @@ def encoded(record: CauseRecord) -> str:
 
 def decoded(text: str) -> CauseRecord | None:
     """Return the record in a text; None if this version cannot read it."""
-    if len(text) > LARGEST_REPORT:
+    if len(text) > MAX_REPORT:
         return None
     try:
         record = RECORDS.decode(text)

@@ -32,7 +32,7 @@ MAX_SET: Final = 2_000
 MAX_REPEATED: Final = 1_000
 """Maximum names in a request that repeats some; otherwise the node's own number is the limit."""
 
-LARGEST_ANSWER: Final = 2**24
+MAX_ANSWER: Final = 2**24
 """Maximum bytes of the values in one answer: a request may repeat a name many times."""
 
 MAX_HELD: Final = 2**26
@@ -237,11 +237,11 @@ def refuse_large(size_bytes: int, what: str) -> None:
     """Refuse an answer that is too large.
 
     Raises:
-        RequestRefusedError: it has more than `LARGEST_ANSWER` bytes.
+        RequestRefusedError: it has more than `MAX_ANSWER` bytes.
     """
-    if size_bytes > LARGEST_ANSWER:
+    if size_bytes > MAX_ANSWER:
         raise RequestRefusedError(
-            f"the {what} have {size_bytes} bytes, at most {LARGEST_ANSWER} fit into an answer; "
+            f"the {what} have {size_bytes} bytes, at most {MAX_ANSWER} fit into an answer; "
             "ask for fewer parameters at once"
         )
 

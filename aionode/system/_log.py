@@ -28,7 +28,7 @@ LAST_LINES: Final = 20
 KEPT_BYTES: Final = 16_384
 """Bytes kept of a member's last lines."""
 
-LONGEST_LINE: Final = 65_536
+MAX_LINE: Final = 65_536
 """Maximum bytes of an unfinished line that the log holds back."""
 
 PIECE: Final = 4096
@@ -122,7 +122,7 @@ class SystemLog:
         key = name, stream
         before = self._unfinished.pop(key, b"")
         end = output.rfind(b"\n") + 1
-        if len(output) - end + (0 if end else len(before)) > LONGEST_LINE:
+        if len(output) - end + (0 if end else len(before)) > MAX_LINE:
             output += b"\n"
             end = len(output)
         if not end:

@@ -25,7 +25,7 @@ FRAMES_SERVICE = "tf2_frames"
 
 NO_AUTHORITY = "no recorded authority"
 
-SHORTEST_NS = 100_000
+MIN_NS = 100_000
 """Shortest history for which tf2 computes a rate, in nanoseconds."""
 
 
@@ -44,7 +44,7 @@ def seconds_text(ns: int) -> str:
 
 def rate_of(frame: Frame) -> float:
     """Return the rate of transforms per second over the history of a frame."""
-    return len(frame) * 1e9 / max(frame.newest_ns - frame.oldest_ns, SHORTEST_NS)
+    return len(frame) * 1e9 / max(frame.newest_ns - frame.oldest_ns, MIN_NS)
 
 
 def frames_as_string(frames: Tree) -> str:

@@ -25,7 +25,7 @@ from tests.faults.roles import Role
 __all__ = ["fuzz"]
 
 ROUND_S = 10.0
-SHORTEST_S = 5.0
+MIN_S = 5.0
 
 GROWS = 4.0
 """How many times as much memory as before a node may take: it keeps what is well-formed."""
@@ -81,7 +81,7 @@ def fuzz(
         planted: The planted defects: names in `DEFECTS`.
         seed: The seed of each round; by default each has its own.
     """
-    round_s = min(max(seconds / len(kinds), SHORTEST_S), ROUND_S)
+    round_s = min(max(seconds / len(kinds), MIN_S), ROUND_S)
     for number, kind in enumerate(cycle(kinds)):
         chosen = secrets.randbelow(10**6) if seed is None else seed
         problems = one_round(chosen, [kind], planted, round_s)

@@ -32,7 +32,7 @@ def plant_descriptions() -> None:
 
     planted: Any = layout
     planted.holds_numbers_in = holds
-    for limit in ("MAX_TYPES", "MAX_FIELDS", "DEEPEST", "LARGEST_MESSAGE"):
+    for limit in ("MAX_TYPES", "MAX_FIELDS", "MAX_DEPTH", "MAX_MESSAGE"):
         setattr(described_type, limit, 2**70)
 
 

@@ -350,7 +350,7 @@ def test_a_file_that_decompresses_to_more_than_is_believable_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It would fill the temporary folder, which other programs need."""
-    monkeypatch.setattr("aionode.bag.files.compression.LARGEST_FILE", 1 << 20)
+    monkeypatch.setattr("aionode.bag.files.compression.MAX_FILE", 1 << 20)
     (tmp_path / name).write_bytes(zstandard.compress(bytes(64 << 20)))
     with pytest.raises(BagError, match="decompresses to more than"):
         bag.open(tmp_path / name)
@@ -407,7 +407,7 @@ def test_a_chunk_that_is_too_large_is_no_damage_to_repair(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It can be read with a higher limit, so a check must not remove it."""
-    monkeypatch.setattr("aionode.bag.files.compression.LARGEST_PART", 1000)
+    monkeypatch.setattr("aionode.bag.files.compression.MAX_PART", 1000)
     with bag.BagWriter(tmp_path / "run") as out:
         out.write(
             out.add_topic(topic_info("/words", String)), 1, cdr.encode(String(data="a" * 99_999))

@@ -80,4 +80,4 @@ def test_an_existing_folder_is_refused_before_the_search(tmp_path: Path) -> None
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut no finer than a second: each step is a process."""
-    monkeypatch.setattr("aionode.bag.replaying.shrinking.SHORTEST_NS", S // 2)
+    monkeypatch.setattr("aionode.bag.replaying.shrinking.MIN_NS", S // 2)

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 FOLDER = Path(".fuzz")
-LONGEST_INPUT = 4096
+MAX_INPUT = 4096
 SLOWEST_S = 5
 MAX_MEMORY_MB = 1024
 
@@ -34,7 +34,7 @@ def fuzz(name: str, seconds: int) -> None:
         (corpus / f"seed-{number}").write_bytes(seed)
     options = [
         f"-max_total_time={seconds}",
-        f"-max_len={LONGEST_INPUT}",
+        f"-max_len={MAX_INPUT}",
         f"-timeout={SLOWEST_S}",
         f"-rss_limit_mb={MAX_MEMORY_MB}",
         f"-artifact_prefix={FOLDER / name}-",

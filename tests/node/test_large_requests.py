@@ -25,7 +25,7 @@ from aionode.logging import _loggers as loggers
 from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.node import Node
 from aionode.parameter import _store as parameter_store
-from aionode.parameter._services import LARGEST_ANSWER, MAX_HELD
+from aionode.parameter._services import MAX_ANSWER, MAX_HELD
 
 LONG = "x" * 10_000
 MANY = 10_000
@@ -41,10 +41,10 @@ def parameters(count: int, size: int = 0, name: str = "own{}") -> list[Parameter
 REFUSED = -1
 
 REQUESTS: list[tuple[Any, str, Any, int]] = [
-    (srv.GetParameters, "get_parameters", {"names": ["a"] * 1_000}, LARGEST_ANSWER),
+    (srv.GetParameters, "get_parameters", {"names": ["a"] * 1_000}, MAX_ANSWER),
     (srv.GetParameters, "get_parameters", {"names": ["a"] * MANY}, REFUSED),
     (srv.GetParameterTypes, "get_parameter_types", {"names": ["a"] * MANY}, 20_000),
-    (srv.DescribeParameters, "describe_parameters", {"names": ["a"] * 1_000}, LARGEST_ANSWER),
+    (srv.DescribeParameters, "describe_parameters", {"names": ["a"] * 1_000}, MAX_ANSWER),
     (srv.DescribeParameters, "describe_parameters", {"names": ["a"] * MANY}, REFUSED),
     (srv.ListParameters, "list_parameters", {"prefixes": ["a." * 100] * MANY}, 1_000),
     (srv.SetParameters, "set_parameters", {"parameters": parameters(2_000)}, 2**20),

@@ -108,7 +108,7 @@ def test_a_handle_is_destroyed_once_by_its_last_user() -> None:
 
 def test_a_long_wait_consists_of_several(monkeypatch: pytest.MonkeyPatch) -> None:
     """One wait of the system is limited; that of the program does not end earlier because of it."""
-    monkeypatch.setattr(destroyable, "LONGEST_WAIT_S", 0.001)
+    monkeypatch.setattr(destroyable, "MAX_WAIT_S", 0.001)
     wakeup = Wakeup()
     threading.Timer(0.05, wakeup.wake).start()
 

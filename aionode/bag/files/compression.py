@@ -28,10 +28,10 @@ __all__ = [
     "plain_message",
 ]
 
-LARGEST_PART: Final = 128 << 20
+MAX_PART: Final = 128 << 20
 """Bytes that a chunk or message may have; more if its compressed size justifies it."""
 
-LARGEST_FILE: Final = 256 << 20
+MAX_FILE: Final = 256 << 20
 """The same limit for a whole file, which is decompressed to a temporary folder."""
 
 LIMIT_VARIABLE: Final = "AIONODE_BAG_LARGEST_BYTES"
@@ -55,7 +55,7 @@ def limit_of(largest: int, ratio: int, compressed_size: int) -> int:
 
 def expect_plain_size(size: int, compressed_size: int) -> None:
     """Raise `TooLargeError` if the declared size of a part is implausible."""
-    most = limit_of(LARGEST_PART, PART_RATIO, compressed_size)
+    most = limit_of(MAX_PART, PART_RATIO, compressed_size)
     if size > most:
         raise TooLargeError(
             f"{compressed_size} bytes claim to be {size} when decompressed, "
@@ -96,7 +96,7 @@ def plain_message(data: bytes) -> bytes:
     if size >= 0:
         return decompressed("zstd", data, size)
     return zstandard.ZstdDecompressor().decompress(
-        data, max_output_size=limit_of(LARGEST_PART, PART_RATIO, len(data))
+        data, max_output_size=limit_of(MAX_PART, PART_RATIO, len(data))
     )
 
 
@@ -122,7 +122,7 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
     folder = Path(stack.enter_context(TemporaryDirectory(prefix="aionode-bag-")))
     plain = folder / path.stem
     try:
-        write_plain(path, file, plain, limit_of(LARGEST_FILE, FILE_RATIO, state.st_size))
+        write_plain(path, file, plain, limit_of(MAX_FILE, FILE_RATIO, state.st_size))
     except zstandard.ZstdError as error:
         raise BagError(str(path), f"it cannot be decompressed ({error})") from error
     except OSError as error:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Piece", "fails", "shrink", "write"]
 
-SHORTEST_NS: Final = 10_000_000
+MIN_NS: Final = 10_000_000
 """The finest step by which time is cut, in nanoseconds."""
 
 NO_TESTS: Final = (2, 3, 4, 5)
@@ -101,7 +101,7 @@ class Search:
     async def cut_end(self) -> None:
         """Move the end of the piece as early as possible."""
         passes_ns, fails_ns = self.piece.start_ns, self.piece.end_ns
-        while fails_ns - passes_ns > SHORTEST_NS:
+        while fails_ns - passes_ns > MIN_NS:
             middle_ns = (passes_ns + fails_ns) // 2
             if await self._try(msgspec.structs.replace(self.piece, end_ns=middle_ns)):
                 fails_ns = middle_ns
@@ -111,7 +111,7 @@ class Search:
     async def cut_start(self) -> None:
         """Move the start of the piece as late as possible, by steps that halve each time."""
         step_ns = (self.piece.end_ns - self.piece.start_ns) // 2
-        while step_ns > SHORTEST_NS:
+        while step_ns > MIN_NS:
             start_ns = self.piece.start_ns + step_ns
             fits = start_ns < self.piece.end_ns
             if not (

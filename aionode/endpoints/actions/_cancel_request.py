@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["CancelRequest", "is_rejected", "warner"]
 
 FIRST_RETRY_S = 0.1
-LONGEST_RETRY_S = 5.0
+MAX_RETRY_S = 5.0
 ATTEMPTS = 14
 """Maximum number of requests, sent within 45 s; after that only answers are awaited."""
 
@@ -83,7 +83,7 @@ class CancelRequest:
             response = self._client.srv_type.Response(return_code=CancelCode.GOAL_TERMINATED)
             self._take_response(response)
             return
-        self._later.call(doubled(FIRST_RETRY_S, self._attempts, LONGEST_RETRY_S), self._send)
+        self._later.call(doubled(FIRST_RETRY_S, self._attempts, MAX_RETRY_S), self._send)
         self._attempts += 1
         if self._client.service_is_ready():
             exchange = self._client._begin(self._request)

@@ -33,7 +33,7 @@ __all__ = [
 ]
 
 
-SHORTEST_LOSS_NS = 30_000_000
+MIN_LOSS_NS = 30_000_000
 
 
 class ActionEntity(Entity):
@@ -136,10 +136,10 @@ def checked_client_lost(on_client_lost: str | None, client_lost_sec: float, subj
             'use "cancel" or "continue"'
         )
     lost_ns = seconds_to_ns(client_lost_sec, f"{subject}: client_lost_sec")
-    if lost_ns < SHORTEST_LOSS_NS:
+    if lost_ns < MIN_LOSS_NS:
         raise ValueError(
             f"{subject}: client_lost_sec={client_lost_sec}; it must be at least "
-            f"{SHORTEST_LOSS_NS / 1e9:g} s, as clients give three signs in that time"
+            f"{MIN_LOSS_NS / 1e9:g} s, as clients give three signs in that time"
         )
     return lost_ns if on_client_lost == "cancel" else 0
 

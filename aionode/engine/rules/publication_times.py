@@ -7,7 +7,7 @@ from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 
 __all__ = ["PublicationTimes"]
 
-SHORTEST_NS = 500_000
+MIN_NS = 500_000
 """Messages published closer together than this say nothing about the pace of arrivals."""
 
 SYNCHRONIZED_NS = 50_000_000
@@ -85,7 +85,7 @@ class PublisherClock:
             apart_ns = source_ns - self.source_ns
             if self._is_proven:
                 self.began_ns += max(passed_ns, 0) // DRIFT
-            elif apart_ns >= SHORTEST_NS and 2 * passed_ns >= apart_ns:
+            elif apart_ns >= MIN_NS and 2 * passed_ns >= apart_ns:
                 self._is_proven = True
                 self.began_ns = before_ns
         self.began_ns = min(self.began_ns, latest_ns)

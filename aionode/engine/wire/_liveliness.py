@@ -74,7 +74,7 @@ TOKEN: Final = re.compile(
 ENDPOINT_CHUNKS: Final = 4
 """Minimum number of chunks in the token of an endpoint besides those in the token of its node."""
 
-LONGEST_TOKEN: Final = 4096
+MAX_TOKEN: Final = 4096
 """Maximum token length in characters: ROS names have at most 255, and a token has five."""
 
 QOS_CHUNKS: Final = 256
@@ -175,7 +175,7 @@ def duration_text(duration: Duration) -> str:
 
 def parse_token(key: str) -> Token | None:
     """Parse a token; return None if its format is unknown."""
-    found = TOKEN.fullmatch(key) if len(key) <= LONGEST_TOKEN else None
+    found = TOKEN.fullmatch(key) if len(key) <= MAX_TOKEN else None
     if found is None:
         return None
     domain, zid, node_id, entity_id, kind, enclave, namespace, name, rest = found.groups()

@@ -47,16 +47,16 @@ MAX_TYPES: Final = 1_000
 MAX_FIELDS: Final = 10_000
 """Maximum total number of fields in a description."""
 
-DEEPEST: Final = 50
+MAX_DEPTH: Final = 50
 """Maximum nesting depth of types."""
 
-LARGEST_BOUND: Final = 2**32 - 1
+MAX_BOUND: Final = 2**32 - 1
 """Maximum bound of a sequence or string, whose length is encoded in 32 bits."""
 
-LARGEST_MESSAGE: Final = 2**26
+MAX_MESSAGE: Final = 2**26
 """Maximum estimated size of a new message in bytes, including all array elements."""
 
-LONGEST_DEFAULT: Final = 2**20
+MAX_DEFAULT: Final = 2**20
 """Maximum length of a default value in characters."""
 
 VALUE_SIZE: Final = 64
@@ -136,7 +136,7 @@ def default_of(type_: FieldType, text: str) -> object:
         ValueError: it does not fit the type; other exceptions of `ast.literal_eval` are possible.
         TypeError: it is not a list.
     """
-    if len(text) > LONGEST_DEFAULT:
+    if len(text) > MAX_DEFAULT:
         raise ValueError("it is too long")
     kind = type_.kind
     if type_.container != "single":
@@ -201,8 +201,8 @@ class DescribedTypes:
             raise self._error(f"it lacks the type {brief(name)}")
         if name in self._open:
             raise self._error(f"{brief(name)} contains itself")
-        if len(self._open) >= DEEPEST:
-            raise self._error(f"its types are nested more than {DEEPEST} deep")
+        if len(self._open) >= MAX_DEPTH:
+            raise self._error(f"its types are nested more than {MAX_DEPTH} deep")
         self._open.append(name)
         cls = self._make(name)
         self._open.pop()
@@ -219,10 +219,10 @@ class DescribedTypes:
                 if field.default_value:
                     defaults[field.name] = self._default(field, types[field.name])
                 size_bytes += self._size_of(types[field.name])
-        if size_bytes > LARGEST_MESSAGE:
+        if size_bytes > MAX_MESSAGE:
             raise self._error(
                 f"a new {brief(name)} takes {size_bytes / 2**20:.3g} MiB including its "
-                f"arrays; at most {LARGEST_MESSAGE >> 20} MiB are allowed"
+                f"arrays; at most {MAX_MESSAGE >> 20} MiB are allowed"
             )
         self._size_bytes[name] = size_bytes
         body = {
@@ -239,16 +239,16 @@ class DescribedTypes:
         container, kind = divmod(described.type_id, 48)
         if kind not in KINDS or container >= len(CONTAINERS):
             raise self._error(f"{brief(field.name)} has the unknown type id {described.type_id}")
-        if described.string_capacity > LARGEST_BOUND:
+        if described.string_capacity > MAX_BOUND:
             raise self._error(
                 f"{brief(field.name)} is a string of {described.string_capacity} characters, "
-                f"at most {LARGEST_BOUND} are allowed"
+                f"at most {MAX_BOUND} are allowed"
             )
         sized = CONTAINERS[container] in {"array", "bounded"}
-        if sized and not 0 < described.capacity <= LARGEST_BOUND:
+        if sized and not 0 < described.capacity <= MAX_BOUND:
             raise self._error(
                 f"{brief(field.name)} has {described.capacity} elements; "
-                f"1 to {LARGEST_BOUND} are allowed"
+                f"1 to {MAX_BOUND} are allowed"
             )
         return FieldType(
             KINDS[kind],

@@ -39,7 +39,7 @@ __all__ = ["demonstrate", "drive", "fitted", "main"]
 CONTRACT = Path(__file__).with_name("contract.yaml")
 DEMONSTRATIONS, DATA_SET, WEIGHTS = Path("demonstrations"), Path("ball"), Path("ball.npy")
 EPISODES = 10
-LONGEST_SEC = 20.0
+MAX_SEC = 20.0
 PARTS = 16
 CHUNK = 4
 MAX_CHUNKS = 200
@@ -102,7 +102,7 @@ async def demonstrate(node: Node, episodes: Episodes, seed: int) -> float:
         async for seconds, picture in timed(observations):
             speed, turn = script(picture)
             actor.send([speed, turn])
-            if seconds > LONGEST_SEC or (0 < speed < 0.02 and abs(turn) < 0.05):
+            if seconds > MAX_SEC or (0 < speed < 0.02 and abs(turn) < 0.05):
                 break
     return seconds
 

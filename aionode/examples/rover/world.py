@@ -21,7 +21,7 @@ __all__ = ["BALL_RADIUS", "RADIUS", "WALLS", "Place", "World"]
 RADIUS: Final = 0.18
 BALL_RADIUS: Final = 0.12
 WALL_HEIGHT: Final = 0.6
-LONGEST_STEP: Final = 0.02
+MAX_STEP: Final = 0.02
 """The largest distance that the rover moves between two checks for contact."""
 
 WALLS: Final[Numbers] = np.array(
@@ -82,7 +82,7 @@ class World:
             turn: The angular velocity, in radians a second.
             seconds: How long.
         """
-        steps = max(1, math.ceil(abs(speed) * seconds / LONGEST_STEP))
+        steps = max(1, math.ceil(abs(speed) * seconds / MAX_STEP))
         distance, angle = speed * seconds / steps, turn * seconds / steps
         return sum(self._step(distance, angle) for _ in range(steps))
 

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 
 __all__ = ["answer_http_error", "answer_other_websocket", "routes"]
 
-LONGEST_CLIENT: Final = 100
+MAX_CLIENT_NAME: Final = 100
 """The longest name of a client, in characters."""
 
 NAMELESS: Final = (
@@ -178,9 +178,9 @@ def caller_of(request: Request, session: Session) -> Caller:
         HTTPException: the name is too long (400).
     """
     client = request.query_params.get("client", "")
-    if len(client) > LONGEST_CLIENT:
+    if len(client) > MAX_CLIENT_NAME:
         raise HTTPException(
-            400, f"client: {len(client)} characters, at most {LONGEST_CLIENT} are allowed"
+            400, f"client: {len(client)} characters, at most {MAX_CLIENT_NAME} are allowed"
         )
     connection: object = None
     if not client:

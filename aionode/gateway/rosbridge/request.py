@@ -46,7 +46,7 @@ POLICIES: Final[dict[str, Mapping[str, Any]]] = {
     },
 }
 
-LONGEST_NAME: Final = 1000
+MAX_NAME: Final = 1000
 """The longest name, id or word in an op, in characters: they are stored, and repeated in
 answers."""
 
@@ -70,7 +70,7 @@ def op_of(frame: str | bytes, most_parts: int) -> Op:
     return op
 
 
-def text(op: Op, name: str, default: str | None = None, most: int | None = LONGEST_NAME) -> str:
+def text(op: Op, name: str, default: str | None = None, most: int | None = MAX_NAME) -> str:
     """Return a field of text.
 
     Args:
@@ -112,8 +112,8 @@ def id_of(op: Op) -> str | None:
         told = msgspec.json.encode(value).decode()
     except OverflowError:  # a number of more than 64 bits
         told = json.dumps(value)
-    if len(told) > LONGEST_NAME:
-        problem = f"{len(told)} characters, at most {LONGEST_NAME} are allowed"
+    if len(told) > MAX_NAME:
+        problem = f"{len(told)} characters, at most {MAX_NAME} are allowed"
         raise MessageError(f"{op['op']}.id", problem)
     return told
 

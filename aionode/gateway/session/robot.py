@@ -36,7 +36,7 @@ BASES: Final = {"msg": Message, "srv": ServiceType, "action": ActionType}
 MAX_TYPES: Final = 1000
 MAX_RATES: Final = 10_000
 
-LONGEST_TYPE: Final = 255
+MAX_TYPE_NAME: Final = 255
 """The longest name of a type, in characters: for an unknown name, similar ones are searched."""
 
 
@@ -102,7 +102,7 @@ class Robot:
         )
         # Actions consist of services and messages, and services of messages.
         of = rf"\w+/({kind}/\w+|(srv|action)/\w+_\w+)"
-        if len(full) > LONGEST_TYPE or not re.fullmatch(of, full, re.ASCII):
+        if len(full) > MAX_TYPE_NAME or not re.fullmatch(of, full, re.ASCII):
             raise misfit
         graph = self.node.graph
         if self._changes != graph.changes:

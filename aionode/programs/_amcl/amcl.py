@@ -44,7 +44,7 @@ MAX_PARTICLES: Final = 100_000
 FARTHEST: Final = 1e6
 """The highest coordinate and covariance of an initial pose, and of the corner of a map."""
 
-LONGEST_SEC: Final = 1e6
+MAX_SEC: Final = 1e6
 """The longest time ahead for which a transform is broadcast."""
 
 TELL_SEC: Final = 2.0
@@ -210,10 +210,10 @@ class Amcl(LifecycleNode):
                     f"initial_pose.{name} is {value}; use a number from {-FARTHEST:g} to "
                     f"{FARTHEST:g}"
                 )
-        if not 0.0 <= self.given("transform_tolerance") <= LONGEST_SEC:
+        if not 0.0 <= self.given("transform_tolerance") <= MAX_SEC:
             raise CommandError(
                 f"transform_tolerance is {self.given('transform_tolerance')}; use seconds from 0 "
-                f"to {LONGEST_SEC:g}"
+                f"to {MAX_SEC:g}"
             )
         if any(not 0 <= self.given(f"alpha{number}") < math.inf for number in range(1, 6)):
             raise CommandError("alpha1 to alpha5 must be 0 or more")

@@ -25,8 +25,8 @@ POLL_SEC: Final = 0.02
 SILENT_POLLS: Final = 100
 """The number of polls without an answer after which the VESC counts as silent."""
 
-SHORTEST_SEC: Final = 0.01
-LONGEST_SEC: Final = 3600.0
+MIN_SEC: Final = 0.01
+MAX_SEC: Final = 3600.0
 """The range of `command_timeout`."""
 
 LOG_SEC: Final = 10.0
@@ -107,10 +107,10 @@ class VescDriver(Node):
             "servo": Limit(self, "servo", (0.0, 1.0)),
         }
         self.silence_sec = number(self, "command_timeout", 0.3)
-        if not SHORTEST_SEC <= self.silence_sec <= LONGEST_SEC:
+        if not MIN_SEC <= self.silence_sec <= MAX_SEC:
             raise CommandError(
                 f"parameter 'command_timeout' is {self.silence_sec:g}; it has to be from "
-                f"{SHORTEST_SEC:g} to {LONGEST_SEC:g} seconds: the motor is released when its "
+                f"{MIN_SEC:g} to {MAX_SEC:g} seconds: the motor is released when its "
                 "commands stop for that long"
             )
         self.frames = packets.Frames()

@@ -21,7 +21,7 @@ __all__ = ["BlackboardView", "BlackboardWatcher", "Exchange", "SubBlackboard"]
 
 PLAIN: Final = (bool, int, float, str, bytes, list, tuple, dict, set, frozenset, type(None))
 """The types of values whose attributes are not listed."""
-DEEPEST: Final = 8
+MAX_DEPTH: Final = 8
 MAX_NAMES: Final = 10_000
 """Maximum number of names listed: attributes of objects may form cycles."""
 INDENT: Final = " " * 4
@@ -210,7 +210,7 @@ class Exchange:
     def _get_nested_keys(self) -> list[str]:
         names: list[str] = []
         for key in sorted(Blackboard.storage):
-            add_names(names, key, Blackboard.storage[key], DEEPEST)
+            add_names(names, key, Blackboard.storage[key], MAX_DEPTH)
         return names
 
     def post_tick_handler(self, visited_client_ids: Iterable[Any] | None = None) -> None:

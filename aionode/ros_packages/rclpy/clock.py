@@ -35,7 +35,7 @@ __all__ = [
 
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
-LONGEST_STEP_S = 1.0
+MAX_STEP_S = 1.0
 """Interval at which a sleep on the system clock checks whether that clock was set."""
 
 steady_ns = MachineTime().steady_ns
@@ -113,7 +113,7 @@ class Clock(ClockHandle):
                     if not self.ros_time_is_active:
                         timeout_sec = left_ns / 1e9
                         if self.clock_type is not ClockType.STEADY_TIME:
-                            timeout_sec = min(timeout_sec, LONGEST_STEP_S)
+                            timeout_sec = min(timeout_sec, MAX_STEP_S)
                     wakeup.wait(timeout_sec)
         finally:
             context.handle.signal.remove(wakeup)

@@ -49,7 +49,7 @@ UNKNOWN = ()
 SKIPPED = 31
 """Number of messages after a cache miss for which the cached text is not compared."""
 
-LONGEST_KEPT = 256
+MAX_KEPT = 256
 """Maximum size of a string that is cached in case the next message has the same one, in bytes."""
 
 
@@ -222,7 +222,7 @@ class DecoderGenerator:
         self._source.line(f"if {skip} > 0: {skip} -= 1")
         with self._source.block("else:"):
             self._source.line(f"{skip} = {SKIPPED}")
-            self._source.line(f"if {size} <= {LONGEST_KEPT}: {statement}")
+            self._source.line(f"if {size} <= {MAX_KEPT}: {statement}")
 
     def _new_text(self, local: str, start: str) -> None:
         """Decode a text; it must end with a NUL inside the data."""

@@ -43,7 +43,7 @@ __all__ = [
 MAX_LEAVES = 64
 """Maximum number of fields, including nested ones, of a message whose code is inlined."""
 
-DEEPEST = 16
+MAX_DEPTH = 16
 """Maximum nesting depth of a message whose code is inlined."""
 
 PHASES = 8
@@ -52,7 +52,7 @@ PHASES = 8
 TEXT = "text"
 """Code of an item whose size is that of a string."""
 
-LONGEST_PACKED = 64
+MAX_PACKED = 64
 """Maximum size of a string that is packed together with the values around it, in bytes."""
 
 Pack: TypeAlias = Callable[..., bytes]
@@ -120,7 +120,7 @@ def is_small(cls: Any) -> bool:
     Larger messages get a function of their own, which bounds the size of the generated code.
     """
     _, leaves, depth = totals(cls)
-    return leaves <= MAX_LEAVES and depth <= DEEPEST
+    return leaves <= MAX_LEAVES and depth <= MAX_DEPTH
 
 
 def has_views(cls: Any) -> bool:
@@ -241,7 +241,7 @@ class TextPacking:
 
     def __call__(self, size: int) -> tuple[Pack, int]:
         """Return the packing function for a string of `size` bytes, and the run's end offset."""
-        if size <= LONGEST_PACKED:
+        if size <= MAX_PACKED:
             whole = struct.Struct(lay_out(self._run, self._start, size))
             self.known[size] = whole.pack, self._start + whole.size
             return self.known[size]

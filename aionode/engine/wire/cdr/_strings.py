@@ -20,7 +20,7 @@ __all__ = [
 
 COUNT = struct.Struct("<I")
 
-LARGEST_KEPT = 4096
+MAX_KEPT = 4096
 """Maximum size of a block of strings that is cached, in bytes; longer ones rarely repeat."""
 
 
@@ -62,7 +62,7 @@ class StringsWriter:
         block = b"".join(parts)
         if self._exact:
             block = block[: len(block) - gap_after(size)]
-        if len(block) <= LARGEST_KEPT:
+        if len(block) <= MAX_KEPT:
             self._last = strings.copy(), block
         return block
 
@@ -91,7 +91,7 @@ class StringsReader:
                 raise NeedsFallback
             text = data[start : end - 1]
             strings.append(text.decode() if of_bytes else str(text, "utf-8"))
-        if end - pos <= LARGEST_KEPT:
+        if end - pos <= MAX_KEPT:
             self._last = count, bytes(data[pos:end]), strings.copy()
         return strings, end
 

@@ -3,7 +3,7 @@
 import { element } from "./dom.js";
 
 const MAX_FRAMES = 2000;
-const DEEPEST = 100; // frames in a chain: a circle ends there
+const MAX_DEPTH = 100; // frames in a chain: a circle ends there
 const TREE_MS = 500;
 
 /** A pose is a translation t in metres and a quaternion q (x, y, z, w). */
@@ -117,7 +117,7 @@ export class Transforms extends EventTarget {
   /** Return the outermost frame around one, with the pose in it. */
   root(frame) {
     let pose = IDENTITY;
-    for (let deep = 0; deep < DEEPEST && this.parents.has(frame); deep++) {
+    for (let deep = 0; deep < MAX_DEPTH && this.parents.has(frame); deep++) {
       const edge = this.parents.get(frame);
       pose = composed(edge.pose, pose);
       frame = edge.parent;
@@ -148,7 +148,7 @@ export function frameTree(transforms) {
     }
     const made = [];
     const add = (frame, deep) => {
-      if (deep > DEEPEST) return;
+      if (deep > MAX_DEPTH) return;
       made.push(row(frame, deep, transforms.parents.get(frame)));
       for (const child of (children.get(frame) ?? []).sort()) add(child, deep + 1);
     };

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from aionode._packages import is_starter_file
-from aionode._process.bounded_files import LARGEST_FILE, read_file
+from aionode._process.bounded_files import MAX_FILE, read_file
 from launch.launch_context import LaunchContext
 from launch.substitution import (
     SomeSubstitutionsType,
@@ -369,7 +369,7 @@ def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
         SubstitutionFailure: it writes more than a file may contain.
     """
     pieces: dict[str, list[bytes]] = {"stdout": [], "stderr": []}
-    left = LARGEST_FILE
+    left = MAX_FILE
     with process, selectors.DefaultSelector() as selector:
         for name in pieces:
             if (pipe := getattr(process, name)) is not None:
@@ -387,7 +387,7 @@ def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
             if selector.get_map():
                 process.kill()
     if left < 0:
-        raise SubstitutionFailure(f"command {line!r} writes more than {LARGEST_FILE} bytes")
+        raise SubstitutionFailure(f"command {line!r} writes more than {MAX_FILE} bytes")
     output, said = (b"".join(each).decode(errors="replace") for each in pieces.values())
     return output, said
 

@@ -6,7 +6,7 @@ from _thread import allocate_lock
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn, Protocol, Self
 
-from aionode._process.lendable_loop import LONGEST_WAIT_S
+from aionode._process.lendable_loop import MAX_WAIT_S
 from aionode.clock import MachineTime
 from rclpy._impl.errors import InvalidHandle
 
@@ -49,12 +49,12 @@ class Wakeup:
     def wait(self, timeout_sec: float | None) -> bool:
         """Wait for a wake-up; return whether one arrived within the limit. None means no limit."""
         if timeout_sec is None:
-            while not self._lock.acquire(timeout=LONGEST_WAIT_S):
+            while not self._lock.acquire(timeout=MAX_WAIT_S):
                 pass
             return True
         ends_ns = steady_ns() + timeout_sec * 1e9
-        while timeout_sec > LONGEST_WAIT_S:
-            if self._lock.acquire(timeout=LONGEST_WAIT_S):
+        while timeout_sec > MAX_WAIT_S:
+            if self._lock.acquire(timeout=MAX_WAIT_S):
                 return True
             timeout_sec = (ends_ns - steady_ns()) / 1e9
         if timeout_sec <= 0:

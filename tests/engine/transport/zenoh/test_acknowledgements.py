@@ -297,7 +297,7 @@ async def without_acknowledgements(
     monkeypatch: pytest.MonkeyPatch,
 ) -> AsyncIterator[tuple[Node, Node]]:
     """Two nodes, each of which takes the other for an older aionode or a ROS 2 node."""
-    monkeypatch.setattr(acknowledgements, "LONGEST_ID", 0)  # # so no token counts
+    monkeypatch.setattr(acknowledgements, "MAX_ID", 0)  # # so no token counts
     async with two_nodes() as nodes:
         yield nodes
 

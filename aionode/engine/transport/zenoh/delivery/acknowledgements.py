@@ -61,7 +61,7 @@ GONE: Final = 1_000
 """Number of contexts to remember after they left: their endpoints have separate tokens, which may
 still exist, and they may come back."""
 
-LONGEST_ID: Final = 32
+MAX_ID: Final = 32
 """Maximum length of a Zenoh session id, in characters."""
 
 
@@ -329,7 +329,7 @@ class Acknowledgements:
     def _receive_token(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
         participant = key.removeprefix(self._prefix).removesuffix(self._suffix)
-        if participant == self._participant or len(participant) > LONGEST_ID:
+        if participant == self._participant or len(participant) > MAX_ID:
             return
         if sample.kind != zenoh.SampleKind.DELETE:
             self._note_present(participant, key)
