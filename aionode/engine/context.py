@@ -242,8 +242,9 @@ class Context:
         # From construction to destruction, each with what to call in a forked child.
         self._nodes: dict[ContextNode, Callable[[], None]] = {}
         self._ids = itertools.count()  # of its nodes and endpoints
-        # The tasks of running nodes and `async with` blocks; without any, the transports close.
-        self._users: list[asyncio.Task[Any] | None] = []
+        # The tasks of running nodes and `async with` blocks, with how many of these each has, the
+        # longest known first; without any, the transports close.
+        self._users: dict[asyncio.Task[Any] | None, int] = {}
         self._shut_down = False  # set by `shutdown`, and never reset
         self._reporters: dict[object, Callable[[], NodeReport]] = {}
         self._open = False  # whether the transports are open
@@ -401,7 +402,8 @@ class Context:
         with self._loop_guard:  # event loops may run in different threads
             self._bind_to_loop()
             # Before opening, so that another loop sees it in use.
-            self._users.append(asyncio.current_task())
+            task = asyncio.current_task()
+            self._users[task] = self._users.get(task, 0) + 1
             self._affinity.attach()
         try:
             async with self._transition:
@@ -410,10 +412,17 @@ class Context:
                     self._open = True
                     self._closed.clear()
         except BaseException:
-            self._users.remove(asyncio.current_task())
+            self._forget(task)
             if not self._users:
                 self._affinity.detach()
             raise
+
+    def _forget(self, task: asyncio.Task[Any] | None) -> None:
+        """Count one node or block of a task less."""
+        if self._users[task] > 1:
+            self._users[task] -= 1
+        else:
+            del self._users[task]
 
     def _bind_to_loop(self) -> None:
         """Bind the context to the running loop; a context works in one loop at a time."""
@@ -428,7 +437,7 @@ class Context:
         self._loop = loop
         self._transition = asyncio.Lock()
         self._closed = asyncio.Event()
-        self._users = []
+        self._users = {}
         self._open = False
 
     async def _open_transports(self) -> None:
@@ -476,7 +485,7 @@ class Context:
         """
         if self._inherited:
             return
-        self._users.remove(task if task in self._users else self._users[0])
+        self._forget(task if task in self._users else next(iter(self._users)))
         async with self._transition:
             if not self._users and self._open:  # unless it was acquired again in the meantime
                 self._open = False
