@@ -18,6 +18,7 @@ from msgspec import Struct, structs
 
 from aionode import names, qos
 from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
+from aionode._process.concurrency import running_loop
 from aionode.errors import EntityDestroyedError
 from aionode.qos import QoSProfile
 
@@ -398,7 +399,7 @@ class Graph:
                 endpoints with one of these names end the wait. In a large system this costs much
                 less than looking again at every change.
         """
-        waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        waiter: asyncio.Future[None] = running_loop().create_future()
         if self._closed:
             end(waiter)
             return waiter

@@ -87,6 +87,17 @@ def test_reading_a_private_attribute_of_another_room_is_a_crossing() -> None:
     assert structure.reads(trees) == ["node/_node.py:1: context._acquire"]
 
 
+def test_what_a_borrower_of_a_loop_may_reach_asks_for_that_loop() -> None:
+    """Who has borrowed a loop is not known to asyncio, but to `running_loop`."""
+    reached = [
+        path
+        for path in MODULES
+        if path.relative_to(ROOT).parts[0] in {"engine", "clock", "graph.py"}
+    ]
+
+    assert [path for path in reached if "get_running_loop" in path.read_text("utf-8")] == []
+
+
 def test_no_folder_has_more_than_twenty_modules() -> None:
     """A reader finds an idea by its folder; files that the names of ROS decide are free of it."""
     folders = Counter(path.parent.relative_to(ROOT).as_posix() for path in MODULES)

@@ -1,8 +1,9 @@
-"""Helpers for asyncio: yielding to the loop, calls in threads, and uninterruptible work."""
+"""Helpers for asyncio: the loop, yielding to it, calls in threads, and uninterruptible work."""
 
 from __future__ import annotations
 
 import asyncio
+import os
 import selectors
 import threading
 from concurrent.futures import Executor, Future
@@ -19,9 +20,11 @@ if TYPE_CHECKING:
 __all__ = [
     "SLICE_NS",
     "DaemonThread",
+    "borrowed_loops",
     "checkpoint",
     "is_cancelled_task",
     "run_in_thread",
+    "running_loop",
     "spin_before_blocking",
     "thread_calls",
     "to_the_end",
@@ -37,6 +40,25 @@ SLICE_NS = 1_000_000
 THREAD_CALLS: WeakKeyDictionary[asyncio.AbstractEventLoop, set[asyncio.Future[None]]] = (
     WeakKeyDictionary()
 )
+
+
+borrowed_loops: dict[int, asyncio.AbstractEventLoop] = {}
+"""The `LendableLoop` that each thread has borrowed, by the thread's number."""
+
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=borrowed_loops.clear)
+
+
+def running_loop() -> asyncio.AbstractEventLoop:
+    """Return the loop that this thread has borrowed, or else the one that it runs.
+
+    For code that a borrower of a `LendableLoop` may reach: telling asyncio about each loan would
+    take a twentieth of the time of a message.
+
+    Raises:
+        RuntimeError: there is none.
+    """
+    return borrowed_loops.get(threading.get_ident()) or asyncio.get_running_loop()
 
 
 @coroutine

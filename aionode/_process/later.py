@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from aionode._process.concurrency import running_loop
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -32,7 +34,7 @@ class Later:
             self._timer = None
             action()
 
-        self._timer = asyncio.get_running_loop().call_later(delay_s, run)
+        self._timer = running_loop().call_later(delay_s, run)
 
     def cancel(self) -> None:
         """Cancel the pending call, if any."""
@@ -56,7 +58,7 @@ class DelayedCalls:
             self._timers.discard(timer)
             action()
 
-        timer = asyncio.get_running_loop().call_later(delay_s, run)
+        timer = running_loop().call_later(delay_s, run)
         self._timers.add(timer)
 
     def cancel(self) -> None:

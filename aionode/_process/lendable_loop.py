@@ -35,11 +35,14 @@ import select
 import selectors
 from contextlib import suppress
 from functools import partial
-from threading import Lock
+from threading import Lock, get_ident
 from typing import TYPE_CHECKING, Any, Protocol, TypeVarTuple
 
+from aionode._process.concurrency import borrowed_loops
+from aionode.clock import MachineTime
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sized
     from contextvars import Context
 
 __all__ = ["MAX_WAIT_S", "LendableLoop", "Readers"]
@@ -56,6 +59,8 @@ MAX_END_S = 1.0
 
 Ts = TypeVarTuple("Ts")
 
+steady_ns = MachineTime().steady_ns
+
 
 class HasFileno(Protocol):
     """An object with a file descriptor."""
@@ -64,11 +69,25 @@ class HasFileno(Protocol):
         """Return the descriptor."""
 
 
+class Sleeper(Protocol):
+    """A thread that waits.
+
+    Attributes:
+        rouse: What those who wake it have to call besides, if anything.
+    """
+
+    rouse: Callable[[], None] | None
+
+    def take(self, blocking: bool, /) -> bool:
+        """Return whether it was woken since the last time; ``blocking`` is False."""
+
+
 class LendableLoop(asyncio.SelectorEventLoop):
     """An event loop that other threads may borrow while it waits for events.
 
-    A borrower's work must be short, like that of a callback of the loop. Meanwhile this is the
-    running loop for the borrower, even if its thread runs its own loop.
+    A borrower's work must be short, like that of a callback of the loop. Meanwhile `running_loop`
+    returns this loop in its thread, even if that runs a loop of its own; asyncio knows nothing of
+    it, since telling it would take a twentieth of a message's time.
 
     Attributes:
         readers: The descriptors of `add_reader`, which another thread may wait for in place of the
@@ -82,7 +101,6 @@ class LendableLoop(asyncio.SelectorEventLoop):
         self._lends = True
         self._is_lent = False
         self._has_news = False
-        self._loop_of_borrower: asyncio.AbstractEventLoop | None = None
         self.readers: Readers | None = None
         super().__init__(_LendingSelector(self._owned))
         if hasattr(select, "epoll"):
@@ -101,16 +119,15 @@ class LendableLoop(asyncio.SelectorEventLoop):
             Whether the caller has it and must call `give_back` soon, as the loop does not wake up
             until then. Always False in asyncio's debug mode, which checks threads.
         """
-        if not self._lends or not self._owned.acquire(blocking=False):
+        if not self._lends or not self._owned.acquire(False):
             return False
         self._is_lent = True
-        self._loop_of_borrower = asyncio._get_running_loop()
-        asyncio._set_running_loop(self)
+        borrowed_loops[get_ident()] = self
         return True
 
     def give_back(self) -> None:
         """Return the borrowed loop; it wakes up if the borrower has given it work."""
-        asyncio._set_running_loop(self._loop_of_borrower)
+        borrowed_loops.pop(get_ident(), None)
         has_news, self._has_news = self._has_news, False
         self._is_lent = False
         self._owned.release()
@@ -141,7 +158,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
     def add_reader(self, fd: int | HasFileno, callback: Callable[[*Ts], Any], *args: *Ts) -> None:
         """Watch a descriptor, as in any loop."""
         if self.readers is not None:
-            self.readers._add(_number_of(fd), partial(callback, *args))
+            self.readers._add(_number_of(fd), partial(callback, *args) if args else callback)
             return
         self._has_news = self._is_lent
         super().add_reader(fd, callback, *args)
@@ -168,9 +185,9 @@ class LendableLoop(asyncio.SelectorEventLoop):
 class Readers:
     """The descriptors that a loop reads, and waiting for them.
 
-    One thread at a time may wait in place of the loop: `begin`, then `wait` and `call` repeatedly,
-    finally `end`. Readable descriptors wake only that thread; the loop continues with its timers
-    and everything else that wakes it. Before and after, the loop reads like any other.
+    One thread at a time may wait in place of the loop: `begin`, then `read`, finally `end`.
+    Readable descriptors wake only that thread; the loop continues with its timers and everything
+    else that wakes it. Before and after, the loop reads like any other.
     """
 
     # The loop waits for `_gate`, in which `_epoll` is disabled while another thread waits.
@@ -200,7 +217,7 @@ class Readers:
         Returns:
             Whether that succeeded: no other thread is waiting, and the loop is not being closed.
         """
-        if not self._waiting.acquire(blocking=False):
+        if not self._waiting.acquire(False):
             return False
         if self._closing:
             self._waiting.release()
@@ -208,34 +225,43 @@ class Readers:
         self._gate.modify(self._fd, 0)
         return True
 
-    def wait(self, timeout_s: float | None) -> list[tuple[int, int]]:
-        """Wait until something is readable or `rouse` is called, with millisecond resolution.
+    def read(self, sleeper: Sleeper, ends_ns: float | None, interruptions: Sized) -> bool:
+        """Read what arrives, with the loop borrowed, until `sleeper` is woken.
 
         Args:
-            timeout_s: The longest wait in seconds, None for no limit; it returns after
-                `MAX_WAIT_S` in any case.
+            sleeper: Who waits; what is read here need not rouse it.
+            ends_ns: The time of the steady clock at which this ends, None for no limit; with a
+                resolution of milliseconds.
+            interruptions: This ends once there are any.
 
         Returns:
-            The argument for `call`; empty after a timeout.
+            Whether it was woken. This also ends if the loop cannot be borrowed or is being closed;
+            the loop does the rest.
         """
-        return self._epoll.poll(MAX_WAIT_S if timeout_s is None else min(timeout_s, MAX_WAIT_S))
-
-    def call(self, readable: list[tuple[int, int]]) -> bool:
-        """Borrow the loop and call the callbacks of these descriptors.
-
-        Returns:
-            False if the loop cannot be borrowed or is being closed: end the wait, and the loop does
-            the rest.
-        """
-        if not readable:
-            return not self._closing
-        if not self._loop.borrow():
-            return False
-        try:
-            self._call(readable)
-        finally:
-            self._loop.give_back()
-        return not self._closing
+        loop = self._loop
+        while not interruptions:
+            timeout_s = MAX_WAIT_S
+            if ends_ns is not None:
+                timeout_s = min((ends_ns - steady_ns()) / 1e9, MAX_WAIT_S)
+                if timeout_s <= 0:
+                    return False
+            sleeper.rouse = self.rouse
+            if sleeper.take(False):
+                return True
+            readable = self._epoll.poll(timeout_s)
+            sleeper.rouse = None
+            if readable:
+                if not loop.borrow():
+                    return sleeper.take(False)
+                try:
+                    self._call(readable)
+                finally:
+                    loop.give_back()
+            if sleeper.take(False):
+                return True
+            if self._closing:
+                return False
+        return False
 
     def end(self) -> None:
         """Hand waiting for the descriptors back to the loop."""
@@ -259,7 +285,7 @@ class Readers:
                 self._close_event()
 
     def _close_event(self) -> None:
-        if not self._rousing and self._is_event_closed.acquire(blocking=False):
+        if not self._rousing and self._is_event_closed.acquire(False):
             os.close(self._event)
 
     def _take_event(self) -> None:
@@ -268,7 +294,7 @@ class Readers:
 
     def _look(self) -> None:
         """Handle readable descriptors, in the loop's thread."""
-        self._call(self.wait(0))
+        self._call(self._epoll.poll(0))
 
     def _call(self, readable: list[tuple[int, int]]) -> None:
         for fd, _ in readable:

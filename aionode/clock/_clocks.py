@@ -7,7 +7,7 @@ from contextlib import suppress
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
-from aionode._process.concurrency import checkpoint
+from aionode._process.concurrency import checkpoint, running_loop
 from aionode.clock._time_base import Alarm, MachineTime, TimeBase
 from aionode.clock._values import S_TO_NS, ClockType, Duration, Time, expect_clock_type, time_at
 from aionode.clock.timer_heap import TimerHeap
@@ -302,7 +302,7 @@ class Clock:
     async def _sleep(
         self, when_ns: int, call_at: Callable[[int, Callable[[], None]], Alarm]
     ) -> None:
-        sleeper: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
+        sleeper: asyncio.Future[bool] = running_loop().create_future()
 
         def wake() -> None:
             if not sleeper.done():

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING
 
+from aionode._process.concurrency import running_loop
 from aionode.clock._values import ClockType, Duration
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class SilenceAlarm:
     def _ring(self) -> None:
         # After a stall of the loop, signs that arrived in time may not be read yet: reading takes
         # one iteration of the loop, and whatever it wakes another one.
-        loop = asyncio.get_running_loop()
+        loop = running_loop()
         loop.call_soon(loop.call_soon, self._judge, self._alarm)
 
     def _judge(self, rung: Alarm | None) -> None:

@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import WeakKeyDictionary
 
-from aionode._process.concurrency import SLICE_NS
+from aionode._process.concurrency import SLICE_NS, running_loop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -117,7 +117,7 @@ class MachineTime(TimeBase):
 
         On Linux it does so within about 0.1 ms, elsewhere within 1 or 2 ms.
         """
-        loop = asyncio.get_running_loop()
+        loop = running_loop()
         alarms = self._kernel_alarms(loop)
         if alarms is not None:
             with suppress(OSError):  # too many open files at the moment

@@ -16,6 +16,7 @@ import weakref
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from aionode._process.concurrency import running_loop
 from aionode.clock.timer_heap import TimerHeap
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ class PeriodicAlarm:
         self._fd = -1
         if PeriodicAlarm.count >= MAX_PERIODIC:
             raise OSError(errno.EMFILE, "the others share one file")
-        self._loop = asyncio.get_running_loop()
+        self._loop = running_loop()
         self._process = os.getpid()
         self._callback = callback
         # On the system clock itself, as its offset from the steady clock keeps changing.

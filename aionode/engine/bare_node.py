@@ -117,11 +117,11 @@ class BarePublisher(BareEndpoint):
             QueueFullError: a reliable KEEP_ALL subscription of this context is full; nothing was
                 sent. `drain` waits for room.
         """
-        sample_info = self.publish_here(msg, source_ns)
-        if sample_info is not None:
-            self.publish_elsewhere(msg, sample_info)
+        sequence = self.publish_here(msg, source_ns)
+        if sequence:
+            self.publish_elsewhere(msg, sequence, source_ns)
 
-    def publish_here(self, msg: Any, source_ns: int) -> SampleInfo | None:
+    def publish_here(self, msg: Any, source_ns: int) -> int:
         """Send a message to the subscriptions of this context only, and deliver it immediately.
 
         Any thread may call it, but only one at a time, and not while a subscription is being
@@ -132,7 +132,7 @@ class BarePublisher(BareEndpoint):
             source_ns: When it was published, in nanoseconds since 1970.
 
         Returns:
-            The argument for `publish_elsewhere`; None if no other context needs the message.
+            Its number, for `publish_elsewhere`; 0 if no other context needs the message.
 
         Raises:
             QueueFullError: as for `publish`.
@@ -140,27 +140,31 @@ class BarePublisher(BareEndpoint):
         for writer in self._here:
             if writer.bounded and not writer.has_room():
                 raise QueueFullError(self.endpoint.name, KEEP_ALL_DEPTH)
-        self.published += 1
-        sample_info = SampleInfo(self.endpoint.gid, self.published, source_ns)
+        sequence = self.published = self.published + 1
         if self._causes is not None:
-            self._causes.note("message", self._party, self.published)
+            self._causes.note("message", self._party, sequence)
         for writer in self._here:
             if writer.active:
-                writer.write(msg, self.published, source_ns)
+                writer.write(msg, sequence, source_ns)
         for other in self._elsewhere:
             if other.active:
-                return sample_info
-        return None
+                return sequence
+        return 0
 
-    def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
+    def publish_elsewhere(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send a message to other contexts, after `publish_here`; in the thread of the loop.
 
         Messages must be passed in order. A link takes the message immediately, unless its socket is
         full or the subscription's window is used up; then the message waits for the loop.
+
+        Args:
+            msg: The same message.
+            sequence: The result of `publish_here`.
+            source_ns: The same time.
         """
         for writer in self._elsewhere:
             if writer.active:
-                writer.write(msg, sample_info.sequence, sample_info.source_ns)
+                writer.write(msg, sequence, source_ns)
 
     def assert_liveliness(self) -> None:
         """Tell the matched subscriptions that the publisher is alive, without a message."""

@@ -20,7 +20,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from aionode._distribution import choose_distribution
-from aionode._process.concurrency import spin_before_blocking, to_the_end
+from aionode._process.concurrency import running_loop, spin_before_blocking, to_the_end
 from aionode._process.imports import uncollected
 from aionode._process.sudden_end import SENDS
 from aionode.arguments import Arguments, Usage
@@ -426,7 +426,7 @@ class Context:
 
     def _bind_to_loop(self) -> None:
         """Bind the context to the running loop; a context works in one loop at a time."""
-        loop = asyncio.get_running_loop()
+        loop = running_loop()
         if self._loop is loop:
             return
         if self._loop is not None and not self._loop.is_closed() and self._users:
@@ -448,7 +448,7 @@ class Context:
                 raise ForkedProcessError(repr(self))
             Context._has_connected = True
         if self._spin_ns:
-            loop = asyncio.get_running_loop()
+            loop = running_loop()
             self._stop_spinning = spin_before_blocking(loop, self._spin_ns, perf_ns, repr(self))
         try:
             for transport in self._transports:

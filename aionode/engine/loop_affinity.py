@@ -8,6 +8,8 @@ from concurrent.futures import Future
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from aionode._process.concurrency import running_loop
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -34,7 +36,7 @@ class LoopAffinity:
 
     def attach(self) -> None:
         """Record the running loop and its thread as those of the context."""
-        self._loop = asyncio.get_running_loop()
+        self._loop = running_loop()
         self.thread = get_ident()
 
     def detach(self) -> None:

@@ -19,8 +19,9 @@ from typing import Any
 
 import pytest
 
+from aionode._process.concurrency import running_loop as current_loop
 from aionode._process.lendable_loop import LendableLoop, Readers
-from aionode.clock import perf_ns
+from aionode.clock import MachineTime, perf_ns
 
 PATIENCE_S = 10.0
 
@@ -124,10 +125,10 @@ def test_the_borrowed_loop_is_the_running_one() -> None:
         async def main() -> None:
             own = asyncio.get_running_loop()
             borrow(loop)
-            borrowed = asyncio.get_running_loop()
+            borrowed = current_loop()
             loop.give_back()
             assert borrowed is loop
-            assert asyncio.get_running_loop() is own
+            assert current_loop() is own
 
         asyncio.run(main())
 
@@ -171,6 +172,24 @@ def readers_of(loop: LendableLoop) -> Readers:
     return loop.readers
 
 
+class Sleeper:
+    """A thread that waits until a function returns True."""
+
+    def __init__(self, is_woken: Callable[[], bool]) -> None:
+        self.rouse: Callable[[], None] | None = None
+        self.is_woken = is_woken
+
+    def take(self, blocking: bool) -> bool:
+        """Return whether it was woken."""
+        assert not blocking
+        return self.is_woken()
+
+
+def ends_after(duration_s: float) -> float:
+    """Return the time when that will have passed."""
+    return MachineTime().steady_ns() + duration_s * 1e9
+
+
 def watch(loop: LendableLoop, sock: socket.socket) -> queue.Queue[int]:
     """Read a socket in a loop; put the thread that does it into the queue each time."""
     read: queue.Queue[int] = queue.Queue()
@@ -197,8 +216,7 @@ def test_the_thread_that_waits_in_place_of_the_loop_reads(
 
         assert readers.begin()
         there.send(b"meanwhile")
-        while read.empty():
-            assert readers.call(readers.wait(PATIENCE_S))
+        assert readers.read(Sleeper(lambda: not read.empty()), ends_after(PATIENCE_S), [])
         readers.end()
         assert read.get() == threading.get_ident()
 
@@ -224,11 +242,12 @@ def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
     with running_loop() as loop:
         readers = readers_of(loop)
         waits, ended = threading.Event(), threading.Event()
+        sleeper = Sleeper(lambda: False)
 
         def wait() -> None:
             readers.begin()
             waits.set()
-            readers.call(readers.wait(PATIENCE_S))
+            readers.read(sleeper, ends_after(PATIENCE_S), [])
             readers.end()
             ended.set()
 
@@ -236,6 +255,7 @@ def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
         waiter.start()
         waits.wait(PATIENCE_S)
         if way == "rouse":
+            sleeper.is_woken = lambda: True
             readers.rouse()
         else:
             loop.call_soon_threadsafe(loop.stop)
@@ -288,7 +308,8 @@ def test_a_wait_of_months_is_possible() -> None:
         assert readers.begin()
         readers.rouse()
 
-        assert readers.wait(5e6)
+        calls = iter((False, True))
+        assert readers.read(Sleeper(lambda: next(calls)), ends_after(5e6), [])
         readers.end()
 
 
@@ -306,7 +327,7 @@ def test_a_reader_that_was_removed_is_not_called(
         there.send(b"unread")
 
         assert readers.begin()
-        assert readers.wait(0.01) == []
+        assert not readers.read(Sleeper(lambda: False), ends_after(0.01), [])
         readers.end()
         assert read.empty()
 
@@ -330,7 +351,7 @@ def test_an_exception_of_a_reader_goes_to_the_handler_of_the_loop(
         loop.give_back()
         assert readers.begin()
         there.send(b"x")
-        assert readers.call(readers.wait(PATIENCE_S))
+        assert readers.read(Sleeper(lambda: bool(handled)), ends_after(PATIENCE_S), [])
         readers.end()
 
     assert [type(each) for each in handled] == [LookupError]
@@ -532,9 +553,7 @@ class Work:
         """Wait in place of the loop repeatedly."""
         while loop.readers is not None and not over.is_set():
             if loop.readers.begin():
-                for _ in range(16):
-                    if not loop.readers.call(loop.readers.wait(0.005)):
-                        break
+                loop.readers.read(Sleeper(over.is_set), ends_after(0.02), [])
                 loop.readers.end()
 
 

@@ -18,11 +18,11 @@ import rclpy
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
-from aionode.engine.transport.base import SampleInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.message import SerializedMessage
+from rclpy import executors
 from rclpy._impl.errors import RCLError
 from rclpy._impl.topics import SubscriptionHandle
 from rclpy._impl.typesupport import service_support
@@ -86,7 +86,7 @@ def test_few_lifespans_of_publishers_are_remembered() -> None:
     handle._lifespans = Recent(REMEMBERED_PUBLISHERS)
     handle.io = SimpleNamespace(call=lambda *_: 0)
     for number in range(5000):
-        handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0), 0)
+        handle._has_expired(number.to_bytes(16, "big"), 0, 0)
 
     assert len(handle._lifespans) == REMEMBERED_PUBLISHERS
 
@@ -419,6 +419,56 @@ def test_a_wake_up_from_before_a_round_begins_no_second_one() -> None:
     executor.spin_once(timeout_sec=0.01)
 
     assert executor.rounds == 1
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.timeout(20)
+def test_a_message_that_woke_a_spin_which_ended_is_found_by_the_next_one() -> None:
+    """An executor looks before a wait only if something has woken it."""
+    node = rclpy.create_node("late")
+    got: list[str] = []
+    node.create_subscription(String, "late", lambda msg: got.append(msg.data), 10)
+    publisher = node.create_publisher(String, "late", 10)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    executor.spin_once(timeout_sec=0.01)
+    done: Future[None] = Future()
+    done.set_result(None)
+    publisher.publish(String(data="hello"))
+    executor.spin_once_until_future_complete(done)
+    assert not got
+
+    executor.spin_once(timeout_sec=60.0)
+
+    assert got == ["hello"]
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_an_executor_does_not_look_where_nothing_can_be_ready(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """After a call that leaves nothing, it waits at once, and looks after the wait."""
+    node = rclpy.create_node("quiet")
+    node.create_subscription(String, "quiet", lambda _: None, 10)
+    publisher = node.create_publisher(String, "quiet", 10)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    find_ready: Callable[..., list[Any]] = vars(executors)["find_ready"]
+    looks_ns: list[int] = []
+
+    def look(*args: Any) -> list[Any]:
+        looks_ns.append(perf_ns())
+        return find_ready(*args)
+
+    monkeypatch.setattr(executors, "find_ready", look)
+    publisher.publish(String())
+    executor.spin_once(timeout_sec=0.05)
+    began_ns = perf_ns()
+    executor.spin_once(timeout_sec=0.05)
+
+    assert looks_ns[1] - began_ns > 0.04 * 1e9
     executor.shutdown()
 
 

@@ -25,7 +25,9 @@ class Handles:
             _guards=[],
             _clients=[],
             _services=[],
-            handle=SimpleNamespace(messages=self.messages, responses=others[0], requests=others[1]),
+            _Node__handle=SimpleNamespace(
+                messages=self.messages, responses=others[0], requests=others[1]
+            ),
         )
 
     def _look(self) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from aionode._process.concurrency import running_loop
 from aionode.clock import ClockChange, ClockType, Duration, JumpThreshold
 
 if TYPE_CHECKING:
@@ -196,7 +197,7 @@ class Ticker(ClockedSchedule):
             on_ring: Called when the alarm rings, if the clock follows the machine's. If it returns
                 True, it has made the call, and the wait continues until the next one is due.
         """
-        waiter = asyncio.get_running_loop().create_future()
+        waiter = running_loop().create_future()
         schedule = self.schedule
         alarm: Alarm | None = None
         period_ns = 0  # of a periodic alarm

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from aionode._process.concurrency import running_loop
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
@@ -59,7 +61,7 @@ class StatusPace:
     def note_change(self) -> None:
         """Schedule the states to be sent soon."""
         if self._due is None:
-            loop = asyncio.get_running_loop()
+            loop = running_loop()
             wait_s = self._spacing.wait_s(loop.time())
             if wait_s:
                 self._due = loop.call_later(wait_s, self.flush)
@@ -74,4 +76,4 @@ class StatusPace:
         self._due = None
         listed = len(self._goals)
         self._send()
-        self._spacing.note_sent(listed, asyncio.get_running_loop().time())
+        self._spacing.note_sent(listed, running_loop().time())

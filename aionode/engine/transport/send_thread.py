@@ -11,6 +11,7 @@ from collections.abc import Callable
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.concurrency import running_loop
 from aionode.clock import perf_ns
 from aionode.engine.transport.loop_waker import ThreadsafeQueue
 from aionode.engine.transport.network import QUEUE_BYTES
@@ -270,7 +271,7 @@ class SendQueue:
     async def drain(self) -> None:
         """Wait until everything was sent. Cancelling is safe."""
         while len(self):
-            waiter = asyncio.get_running_loop().create_future()
+            waiter = running_loop().create_future()
             self._drained.append(waiter)
             if len(self):  # the thread checks the list after counting, so one of both sees it
                 await waiter

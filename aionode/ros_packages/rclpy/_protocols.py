@@ -35,6 +35,7 @@ class NodeLike(Protocol):
     _guards: list[Any]
     _clients: list[Any]
     _services: list[Any]
+    _Node__handle: NodeHandle
     _Node__waitables: list[Any]
 
     @property

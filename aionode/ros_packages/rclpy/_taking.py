@@ -18,11 +18,20 @@ from rclpy._impl.wait_set import WaitSet
 from rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
+    from rclpy._impl.destroyable import Arrivals
     from rclpy._protocols import ExecutorLike, NodeLike
     from rclpy.callback_groups import Entity
 
 
-__all__ = ["Ready", "Take", "await_or_execute", "find_ready", "wait_set_of"]
+__all__ = [
+    "Ready",
+    "Take",
+    "await_or_execute",
+    "find_ready",
+    "is_awaited",
+    "may_be_ready",
+    "wait_set_of",
+]
 
 
 Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
@@ -33,7 +42,7 @@ now_ns = MachineTime().system_ns
 MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
 
 
-def find_ready(  # noqa: C901  # twice for each message, so in one function
+def find_ready(
     nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
 ) -> list[Ready]:
     """Return what is ready now, in the order of a round; note where nothing was."""
@@ -46,31 +55,59 @@ def find_ready(  # noqa: C901  # twice for each message, so in one function
                 if can_execute(waitable) and is_ready(waitable, context)
             ]
     for node in nodes:
-        handle = node.handle
-        for entities, arrivals, take in (
-            (node._timers, None, take_timer),
-            (node._subscriptions, handle.messages, take_subscription),
-            (node._guards, None, take_guard_condition),
-            (node._clients, handle.responses, take_client),
-            (node._services, handle.requests, take_service),
-        ):
-            if not entities:
-                continue
-            last = None
-            if arrivals is not None:
-                last = arrivals.last
-                if last is arrivals.seen:
-                    continue
-            found = False
-            # A copy: another thread may destroy one meanwhile, and the next one would be skipped.
-            for entity in tuple(entities):
-                if entity._handle.ready():
-                    found = True
-                    if can_execute(entity):
-                        ready.append((entity, node, take))
-            if arrivals is not None and not found:
-                arrivals.seen = last
+        handle = node._Node__handle
+        messages, responses, requests = handle.messages, handle.responses, handle.requests
+        # One kind after the other, and not in a loop: this is done for each message.
+        if node._timers:
+            ready += among(node._timers, node, take_timer, can_execute)
+        if messages.last is not messages.seen:
+            ready += arrived(messages, node._subscriptions, node, take_subscription, can_execute)
+        if node._guards:
+            ready += among(node._guards, node, take_guard_condition, can_execute)
+        if responses.last is not responses.seen:
+            ready += arrived(responses, node._clients, node, take_client, can_execute)
+        if requests.last is not requests.seen:
+            ready += arrived(requests, node._services, node, take_service, can_execute)
     return ready
+
+
+def among(
+    entities: list[Any], node: NodeLike, take: Take, can_execute: Callable[[Entity], bool]
+) -> list[Ready]:
+    """Return the ready ones of a node's entities of one kind."""
+    return [
+        (entity, node, take)
+        # A copy: another thread may destroy one meanwhile, and the next one would be skipped.
+        for entity in tuple(entities)
+        if entity._handle.ready() and can_execute(entity)
+    ]
+
+
+def arrived(
+    arrivals: Arrivals,
+    entities: list[Any],
+    node: NodeLike,
+    take: Take,
+    can_execute: Callable[[Entity], bool],
+) -> list[Ready]:
+    """Return those for which something has arrived; note it if none is ready."""
+    last = arrivals.last
+    found = False
+    ready: list[Ready] = []
+    for entity in tuple(entities):  # a copy, as above
+        if entity._handle.ready():
+            found = True
+            if can_execute(entity):
+                ready.append((entity, node, take))
+    if not found:
+        arrivals.seen = last
+    return ready
+
+
+def may_be_ready(called: Ready) -> bool:
+    """Return whether what was called may be ready again already."""
+    entity, _, take = called
+    return take is take_waitable or bool(entity._handle.ready())
 
 
 def is_ready(waitable: Any, context: Any) -> bool:
@@ -115,12 +152,12 @@ def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
         callback = partial(callback, **{name: timer.info(called)})
     log = timer.handle.causes
     if log is None:
-        return partial(run, callback)
+        return partial(callback)
     owners = (
         node.get_fully_qualified_name() for node in executor.get_nodes() if timer in node._timers
     )
     party = timer_party(timer, next(owners, ""))
-    return noting(partial(run, callback), log, party, "timer", (party.gid, 0))
+    return noting(partial(run, partial(callback)), log, party, "timer", (party.gid, 0))
 
 
 def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
@@ -132,21 +169,21 @@ def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[],
     if taken is None:
         return None
     if subscription._callback_type is MESSAGE_ONLY:
-        call = partial(run, subscription._callback, taken[0])
+        call = partial(subscription._callback, taken[0])
     else:
-        call = partial(run, subscription._callback, taken[0], handle.info_of(taken))
+        call = partial(subscription._callback, taken[0], handle.info_of(taken))
     if handle.causes is None:
         return call
     party = party_of(subscription, handle.endpoint, subscription._callback)
-    _, origin, arrived_ns, _ = taken
-    identity = (origin.gid, origin.sequence)
-    return noting(call, handle.causes, party, "message", identity, now_ns() - arrived_ns)
+    _, gid, sequence, _, arrived_ns, _ = taken
+    waited_ns = now_ns() - arrived_ns
+    return noting(partial(run, call), handle.causes, party, "message", (gid, sequence), waited_ns)
 
 
 def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
     """Take the trigger of a guard condition."""
     guard.handle.take()
-    return None if guard.callback is None else partial(run, guard.callback)
+    return None if guard.callback is None else partial(guard.callback)
 
 
 def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None:
@@ -213,13 +250,17 @@ def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | 
     return execute
 
 
-def run(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call `callback`; return a coroutine only if it is a coroutine function, as in rclpy."""
-    result = callback(*args)
-    if (
-        result is not None
-        and inspect.iscoroutine(result)
-        and not inspect.iscoroutinefunction(callback)
-    ):
-        return None
-    return result
+def is_awaited(call: Callable[[], Any], result: Any) -> bool:
+    """Return whether the result of a call is a coroutine to be awaited.
+
+    As in rclpy, a coroutine that another function than a coroutine function returns is not.
+    """
+    return inspect.iscoroutine(result) and (
+        not isinstance(call, partial) or inspect.iscoroutinefunction(call)
+    )
+
+
+def run(call: Callable[..., Any]) -> Any:
+    """Call, and return a coroutine only if it is to be awaited."""
+    result = call()
+    return result if is_awaited(call, result) else None

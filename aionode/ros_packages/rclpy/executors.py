@@ -23,6 +23,8 @@ from rclpy._taking import (
     Take,
     await_or_execute,
     find_ready,
+    is_awaited,
+    may_be_ready,
     wait_set_of,
 )
 from rclpy.task import Future, Task
@@ -45,6 +47,7 @@ __all__ = [
     "TimeoutException",
     "TimeoutObject",
     "await_or_execute",
+    "inspect",
     "time",
 ]
 
@@ -114,6 +117,10 @@ class Executor:
         # Used by the spinning thread; only one thread at a time may spin.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
+        # Whether something may be ready: it has woken the executor since the last look, or it was
+        # ready then, and perhaps has more, or was not called. If not, there is no look before a
+        # wait.
+        self._Executor__some_left = True
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
@@ -172,8 +179,7 @@ class Executor:
 
     def get_nodes(self) -> list[NodeLike]:
         """Return the nodes."""
-        with self._nodes_lock:
-            return list(self._nodes)
+        return list(self._nodes)
 
     def wake(self) -> None:
         """Wake the executor to check again what is ready; any thread may call this."""
@@ -245,7 +251,7 @@ class Executor:
             left_ns = ends_ns - steady_ns()
             if left_ns <= 0:
                 return
-            left.timeout = left_ns / 1e9
+            left._timeout = left_ns / 1e9
 
     def _Executor__goes_on(self, future: Future[Any]) -> bool:
         if self._Executor__context_handle.is_shut_down:
@@ -365,7 +371,8 @@ class Executor:
         context = self._Executor__context_handle
         yielded = False
         while not yielded:
-            self._Executor__wakeup.take(False)  # whatever woke it is checked now
+            if self._Executor__wakeup.take(False):  # whatever woke it is checked now
+                self._Executor__some_left = True
             if self._is_shutdown or context.is_shut_down or condition():
                 self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
@@ -373,14 +380,18 @@ class Executor:
                 for work in self._Executor__unfinished(used):
                     yielded = True
                     yield work
-            ready = find_ready(used, self.can_execute, context)
-            if not ready and not yielded:
-                left_ns = None if ends_ns is None else ends_ns - steady_ns()
-                if left_ns is None or left_ns > 0:
-                    self._Executor__wait(used, left_ns)
-                    if self._is_shutdown or context.is_shut_down:
-                        self._Executor__raise_if_over()
-                    ready = find_ready(used, self.can_execute, context)
+            left_ns = None if ends_ns is None else ends_ns - steady_ns()
+            may_wait = not yielded and (left_ns is None or left_ns > 0)
+            ready: list[Ready] = []
+            if self._Executor__some_left or nodes is not None or not may_wait:
+                ready = find_ready(used, self.can_execute, context)
+            if may_wait and not ready:
+                self._Executor__some_left = True
+                self._Executor__wait(used, left_ns)
+                if self._is_shutdown or context.is_shut_down:
+                    self._Executor__raise_if_over()
+                ready = find_ready(used, self.can_execute, context)
+            self._Executor__some_left = bool(ready) or nodes is not None
             if len(ready) > 1:
                 ready = self._Executor__in_turn(ready)
             # Before the calls, which may take longer than the limit.
@@ -390,6 +401,8 @@ class Executor:
                 if call is ready[0] or self.can_execute(call[0]):
                     yielded = True
                     yield call
+            if len(ready) == 1:
+                self._Executor__some_left = may_be_ready(*ready) or nodes is not None
             if over:
                 raise TimeoutException
 
@@ -486,7 +499,7 @@ class Executor:
             self.wake()
             if call is not None:
                 result = call()
-                if inspect.iscoroutine(result):
+                if is_awaited(call, result):
                     await result
         finally:
             entity._executor_event = False
@@ -507,7 +520,7 @@ class Executor:
         try:
             call = take(self, entity)
             result = None if call is None else call()
-            if result is not None and inspect.iscoroutine(result):
+            if result is not None and call is not None and is_awaited(call, result):
                 coroutine = result
         finally:
             if coroutine is None and group is not None:
@@ -624,6 +637,7 @@ class MultiThreadedExecutor(Executor):
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         while sum(task._scheduled for task in self._futures) >= self._Executor__num_threads:
             self._Executor__wakeup.take(False)  # whatever woke it is checked now
+            self._Executor__some_left = True
             self._Executor__raise_if_over(condition)
             self._cb_iter = None  # more may be ready when a thread is free
             left_ns = None if ends_ns is None else ends_ns - steady_ns()

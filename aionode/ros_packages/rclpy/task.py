@@ -7,6 +7,7 @@ import sys
 import threading
 import warnings
 import weakref
+from _thread import RLock  # `threading.RLock` is a function that calls it
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -57,10 +58,9 @@ class Future(Generic[T]):
         self._wakers: list[Callable[[], None]] = []
         # Ensures that each callback is called once: it is added before completion, or called after
         # it. A signal handler may complete the future while this thread holds the lock.
-        self._lock = threading.RLock()
-        self._executor: weakref.ref[ExecutorLike] | None = None
+        self._lock = RLock()
+        self._executor = None if executor is None else weakref.ref(executor)
         self._cause: Run | None = None  # the response that it has brought, where that is kept
-        self._set_executor(executor)
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from rosidl_generator_py._codec import decode, decoder_of, encode, from_aionode, to_aionode
+from rosidl_generator_py._codec import (
+    decode,
+    decoder_of,
+    encode,
+    encoder_of,
+    from_aionode,
+    to_aionode,
+)
 from rosidl_generator_py._names import (
     action_class,
     aionode_class,
@@ -20,6 +27,7 @@ __all__ = [
     "decode",
     "decoder_of",
     "encode",
+    "encoder_of",
     "from_aionode",
     "interface_class",
     "message_class",

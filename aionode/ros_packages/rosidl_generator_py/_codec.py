@@ -12,7 +12,7 @@ from aionode.message import Field, FieldType, Message, fields, type_name
 from rosidl_generator_py._classes import aionode_class, python_class
 from rosidl_generator_py._field_types import TYPE_CODES, is_numeric
 
-__all__ = ["decode", "decoder_of", "encode", "from_aionode", "to_aionode"]
+__all__ = ["decode", "decoder_of", "encode", "encoder_of", "from_aionode", "to_aionode"]
 
 ENCODERS: dict[type[Any], Callable[[Any], bytes]] = {}
 
@@ -33,7 +33,7 @@ def encode(msg: Any) -> bytes:
     """
     function = ENCODERS.get(msg.__class__)
     if function is None:
-        function = ENCODERS[msg.__class__] = new_encoder(msg.__class__)
+        function = ENCODERS[msg.__class__] = encoder_of(msg.__class__)
     return function(msg)
 
 
@@ -59,8 +59,13 @@ def decoder_of(cls: Any) -> Callable[[Data], Any]:
     return decoder(described(cls), FAMILY)
 
 
-def new_encoder(cls: type[Any]) -> Callable[[Any], bytes]:
-    """Return the encoder of a message class."""
+@cache
+def encoder_of(cls: Any) -> Callable[[Any], bytes]:
+    """Return a function that encodes messages of one class, like `encode`.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
     if issubclass(cls, Message):
         return encoder(cls)
     return encoder(described(cls), FAMILY)

@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
-from aionode._process.concurrency import SLICE_NS
+from aionode._process.concurrency import SLICE_NS, running_loop
 from aionode.clock import perf_ns
 from aionode.engine.transport.link import _protocol as protocol
 from aionode.engine.transport.link._protocol import (
@@ -542,7 +542,7 @@ class Connection:
         """Release a buffer of the other process; called on any thread, within any other call."""
         call_soon = self._loop.call_soon_threadsafe
         with suppress(RuntimeError):  # in another thread
-            if asyncio.get_running_loop() is self._loop:
+            if running_loop() is self._loop:
                 call_soon = self._loop.call_soon  # without a system call to wake it
         with suppress(RuntimeError):  # the loop is closed, and so is the socket
             call_soon(self.send, Release(number))

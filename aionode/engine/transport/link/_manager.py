@@ -7,6 +7,7 @@ import logging
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.concurrency import running_loop
 from aionode._process.later import DelayedCalls
 from aionode._process.recent import Recent
 from aionode._process.restart import doubled
@@ -140,7 +141,7 @@ class LinkManager:
         """Start accepting and dialling; without a listener there are no links."""
         self.pool = BufferPool()
         self._graph = graph
-        self._loop = asyncio.get_running_loop()
+        self._loop = running_loop()
         self._listener = listener
         if listener is not None:
             self._peer_directory.on_retransmit = self.on_retransmit

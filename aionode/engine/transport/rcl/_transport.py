@@ -6,6 +6,7 @@ import asyncio
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode._process.concurrency import running_loop
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Registration, Transport
 from aionode.engine.transport.drops import Drop, Drops
@@ -87,7 +88,7 @@ class RclTransport(Transport):
 
     async def open(self, graph: Graph) -> None:
         """Join the domain; return when the running nodes are known, as far as can be determined."""
-        self._state.open(asyncio.get_running_loop(), graph)
+        self._state.open(running_loop(), graph)
         if self._state.rcl is not None:
             self._watcher.start(self._state.rcl)
         await self._until_quiet(QUIET_S, KNOWN_S, 0, KNOWN_S)
@@ -108,7 +109,7 @@ class RclTransport(Transport):
         self, quiet_s: float, alone_s: float, lacking_s: float, limit_s: float
     ) -> None:
         """Wait until nothing has changed for a while; for longer if something is missing."""
-        ended = asyncio.get_running_loop().create_future()
+        ended = running_loop().create_future()
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
                 while not self._is_quiet(quiet_s, alone_s, lacking_s):

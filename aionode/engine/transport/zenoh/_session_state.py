@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 import zenoh
 from msgspec import Struct
 
+from aionode._process.concurrency import running_loop
 from aionode._process.later import Later
 from aionode.clock import MachineTime, perf_ns
 from aionode.engine.transport.base import Registration
@@ -262,7 +263,7 @@ class SessionState:
         with suppress(TimeoutError):
             async with asyncio.timeout(FLUSH_S):
                 while self.lingering:
-                    self._lingered = asyncio.get_running_loop().create_future()
+                    self._lingered = running_loop().create_future()
                     await self._lingered
                 for send_thread in list(self.send_threads):
                     if send_thread is not self.bulk:

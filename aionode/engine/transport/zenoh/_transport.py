@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import zenoh
 
+from aionode._process.concurrency import running_loop
 from aionode._process.stopped import is_stopped
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Transport
@@ -182,7 +183,7 @@ class ZenohTransport(Transport):
             raise
         session, expected = opened.session, opened.expected
         self._presence, self._dialled = opened.presence, opened.dialled
-        self._state.waker.open(asyncio.get_running_loop())
+        self._state.waker.open(running_loop())
         # Before waiting for others, so that peers connecting meanwhile see everything. After a
         # failure from here on, `close` closes the session.
         self.peer_directory.announce(session)
@@ -332,7 +333,7 @@ class ZenohTransport(Transport):
 
     def _ask(self, session: zenoh.Session) -> asyncio.Future[bool]:
         """Ask all connected peers for their tokens; the future completes when all have answered."""
-        self._answered = answered = asyncio.get_running_loop().create_future()
+        self._answered = answered = running_loop().create_future()
         self._watcher.ask(session, answered)
         return answered
 

@@ -104,10 +104,10 @@ class Arrivals:
         seen: What had come last when an executor looked at all of them, and none was ready.
     """
 
-    __slots__ = ("_signal", "last", "seen")
+    __slots__ = ("_wakeups", "last", "seen")
 
     def __init__(self, signal: Signal) -> None:
-        self._signal = signal
+        self._wakeups = signal._wakeups
         self.last: object = None
         self.seen: object = None
 
@@ -116,7 +116,7 @@ class Arrivals:
         # A new object each time, because threads could lose a count: executors compare it with
         # `seen`.
         self.last = object()
-        for wakeup in tuple(self._signal._wakeups):
+        for wakeup in tuple(self._wakeups):
             wakeup.wake()
 
 

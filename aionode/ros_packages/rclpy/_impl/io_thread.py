@@ -19,12 +19,11 @@ from rclpy._impl.destroyable import Wakeup
 from rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
-    from aionode._process.lendable_loop import Readers
+    from aionode.engine.bare_node import BarePublisher
 
 __all__ = ["IoThread"]
 
 T = TypeVar("T")
-ArgT = TypeVar("ArgT")
 
 MAX_WAITING = 1000
 """Number of messages that may wait for the thread before `publish` blocks."""
@@ -44,6 +43,9 @@ Inside Zenoh at the very end, it would abort the process.
 
 logger = logging.getLogger("aionode.rclpy")
 
+FAILURE = "in the input and output of a context"
+
+now_ns = MachineTime().system_ns
 steady_ns = MachineTime().steady_ns
 
 
@@ -150,46 +152,55 @@ class IoThread:
             self.post(action)
             return
         try:
-            self._send(action)
+            loop = self._loop
+            if self._work or loop is None or not loop.borrow():
+                self.post(action)
+                return
+            try:
+                action()
+            except Exception:
+                logger.exception(FAILURE)
+            finally:
+                loop.give_back()
         finally:
             uninterrupted.end()
 
-    def _send(self, action: Callable[[], object]) -> None:
-        loop = self._loop
-        if self._work or loop is None or not loop.borrow():
-            self.post(action)
-            return
-        try:
-            action()
-        except Exception:
-            logger.exception("in the input and output of a context")
-        finally:
-            loop.give_back()
+    def publish(self, publisher: BarePublisher, msg: Any) -> None:
+        """Deliver a message inside this context, and then send it to others, as `send` does.
 
-    def deliver(self, work: Callable[[ArgT], Callable[[], object] | None], arg: ArgT) -> None:
-        """Call `work`, which delivers inside this context, and then call its result like `send`.
-
-        Only one call is in progress at a time. It is complete when this returns; only for a
-        finalizer that has interrupted such a call it completes later. It waits first while more is
-        posted than the thread has done.
+        Only one call is in progress at a time. It is delivered when this returns; only for a
+        finalizer that has interrupted such a call it is delivered later. This waits first while
+        more is posted than the thread has done.
 
         Raises:
-            Exception: raised by `work`.
+            QueueFullError: a KEEP_ALL subscription of this context is full.
         """
         if len(self._work) >= MAX_WAITING:
             self._pace()
         if uninterrupted.begin():
             try:
                 with self._delivery_lock:
-                    action = work(arg)
-                    if action is not None:
-                        self._send(action)
+                    source_ns = now_ns()
+                    sequence = publisher.publish_here(msg, source_ns)
+                    if not sequence:
+                        return
+                    loop = self._loop
+                    if self._work or loop is None or not loop.borrow():
+                        self.post(partial(publisher.publish_elsewhere, msg, sequence, source_ns))
+                        return
+                    # `send` inlined: two calls less for each message.
+                    try:
+                        publisher.publish_elsewhere(msg, sequence, source_ns)
+                    except Exception:
+                        logger.exception(FAILURE)
+                    finally:
+                        loop.give_back()
             finally:
                 uninterrupted.end()
-        elif uninterrupted.current.begun:
-            self.post(partial(self.deliver, work, arg))
+        elif uninterrupted.begun():
+            self.post(partial(self.publish, publisher, msg))
         else:
-            self.call(self.deliver, work, arg)
+            self.call(self.publish, publisher, msg)
 
     def change_delivery(self, change: Callable[[], T]) -> T:
         """Call `change`, which adds or removes receivers of deliveries; in the thread only.
@@ -224,13 +235,13 @@ class IoThread:
         if (
             readers is not None
             and (timeout_sec is None or timeout_sec > PRECISE_S)
-            and uninterrupted.begin()
+            and uninterrupted.begin(readers.rouse)
         ):
             try:
-                uninterrupted.current.rouse = readers.rouse
                 if readers.begin():
                     try:
-                        if read_until(wakeup, readers, ends_ns):
+                        reads_until_ns = None if ends_ns is None else ends_ns - PRECISE_S * 1e9
+                        if readers.read(wakeup, reads_until_ns, uninterrupted.postponed):
                             return True
                     finally:
                         wakeup.rouse = None
@@ -241,7 +252,7 @@ class IoThread:
 
     def _pace(self) -> None:
         """Wait until the thread has done what is posted, where it is possible to wait."""
-        if not self.is_current and not uninterrupted.current.begun:
+        if not self.is_current and not uninterrupted.begun():
             turn = Wakeup()
             self.post(turn.wake)
             turn.wait(None)
@@ -274,7 +285,7 @@ class IoThread:
                 action()
             except Exception:
                 if not self._ended:
-                    logger.exception("in the input and output of a context")
+                    logger.exception(FAILURE)
         if work:
             self._schedule()
 
@@ -333,26 +344,3 @@ class IoThread:
         """The event loop of the thread."""
         assert self._loop is not None  # noqa: S101  # `start` has returned
         return self._loop
-
-
-def read_until(wakeup: Wakeup, readers: Readers, ends_ns: float | None) -> bool:
-    """Read incoming data instead of the loop, and return whether a wake-up has come.
-
-    It ends without one shortly before the time has passed, when the loop cannot be borrowed, and
-    when a signal has to be handled.
-    """
-    while not uninterrupted.postponed:
-        left_s = None if ends_ns is None else (ends_ns - steady_ns()) / 1e9
-        if left_s is not None and left_s <= PRECISE_S:
-            break
-        wakeup.rouse = readers.rouse
-        if wakeup.take(False):
-            return True
-        readable = readers.wait(None if left_s is None else left_s - PRECISE_S)
-        wakeup.rouse = None
-        may_go_on = readers.call(readable)
-        if wakeup.take(False):
-            return True
-        if not may_go_on:
-            break
-    return False

@@ -35,8 +35,9 @@ __all__ = ["PublisherHandle", "SubscriptionHandle"]
 Feed = list["Callable[[SampleInfo | None], None]"]
 """Functions called with each message in the thread of the context, to watch for events."""
 
-Sample = tuple[Any, SampleInfo, int, int]
-"""A message, its origin, its arrival time, and its number among the taken ones."""
+Sample = tuple[Any, bytes, int, int, int, int]
+"""A message, its publisher's gid, number and time, its arrival time, and its number among the taken
+ones."""
 
 UNWEIGHED = 2
 """Number of messages that may wait whatever their size in bytes."""
@@ -59,8 +60,12 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
 
     def publish(self, msg: Any) -> None:
         """Send a message."""
+        support = self._support
         try:
-            data = self._support.encode(msg)
+            if msg.__class__ is self.msg_type:
+                data = support.encode_exactly(msg)
+            else:
+                data = support.encode(msg)
         except MessageError as error:
             error.add_note(f"published to {self.name}")
             raise
@@ -77,19 +82,12 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         """
         if self._node.context_handle.is_shut_down:
             self._node.context_handle.refuse_to_publish()
-        self.io.deliver(self._publish_here, self._support.wire_type(data))
-        if self.feed:
-            self.io.post(self._tell_feed)
-
-    def _publish_here(self, msg: Any) -> Callable[[], object] | None:
-        """Deliver a message within this context; return the function that sends it to others."""
         try:
-            sample_info = self.bare.publish_here(msg, now_ns())
+            self.io.publish(self.bare, self._support.wire_type(data))
         except QueueFullError as error:
             raise RCLError(f"Failed to publish: {error}") from error
-        if sample_info is None:
-            return None
-        return partial(self.bare.publish_elsewhere, msg, sample_info)
+        if self.feed:
+            self.io.post(self._tell_feed)
 
     def refuse_after_shutdown(self, failure: str) -> None:
         """Raise after shutdown, whatever caused it.
@@ -160,7 +158,7 @@ class Inbox:
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
         # Threads append and take in one atomic step; `arrivals` wakes a thread that found it empty.
-        self.items: deque[tuple[Any, SampleInfo, int]] = deque(
+        self.items: deque[tuple[bytes, bytes, int, int, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
         self._limit_bytes = limit_bytes
@@ -185,10 +183,10 @@ class Inbox:
         arrived_ns: int = 0,
     ) -> None:
         """Take one message."""
-        sample_info = SampleInfo(gid, sequence, source_ns, arrived_ns)
         data = msg.data
         if self.feed:
-            self._post(partial(self._tell_feed, sample_info))
+            origin = SampleInfo(gid, sequence, source_ns, arrived_ns)
+            self._post(partial(self._tell_feed, origin))
         if self.accept is not None and not self.accept(data):
             return
         items = self.items
@@ -198,7 +196,7 @@ class Inbox:
             return
         if self.keep_all and len(items) == self.limit:
             return
-        items.append((data, sample_info, arrived_ns or now_ns()))
+        items.append((data, gid, sequence, source_ns, arrived_ns or now_ns()))
         self._arrivals.note()
 
     def note_alive(self, gid: bytes) -> None:
@@ -212,7 +210,7 @@ class Inbox:
         if (len(self.items) + 1) * self._largest_bytes <= self._limit_bytes:
             return False  # nothing to add up, as nearly always
         waiting = self.items.copy()  # other threads take from it
-        return sum(len(data) for data, _, _ in waiting) + size_bytes > self._limit_bytes
+        return sum(len(data) for data, *_ in waiting) + size_bytes > self._limit_bytes
 
     def _make_room(self, size_bytes: int) -> bool:
         """Drop the oldest messages until one of this size fits; return whether it does."""
@@ -308,15 +306,13 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         inbox = self.inbox
         while inbox.items:
             try:
-                data, sample_info, arrived_ns = inbox.items.popleft()
+                data, gid, sequence, source_ns, arrived_ns = inbox.items.popleft()
             except IndexError:  # another thread was faster
                 return None
             if inbox.room_waiters:
                 self.io.post(inbox.tell_of_room)
             # 0 for the messages of most publishers, which do not expire.
-            if self._lifespans.get(sample_info.gid) != 0 and self._has_expired(
-                sample_info, arrived_ns
-            ):
+            if self._lifespans.get(gid) != 0 and self._has_expired(gid, source_ns, arrived_ns):
                 continue
             message = data
             if not raw:
@@ -327,21 +323,18 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
                     self._complain(error)
                     continue
             self._received += 1
-            return message, sample_info, arrived_ns, self._received
+            return message, gid, sequence, source_ns, arrived_ns, self._received
         return None
 
     def info_of(self, taken: Sample) -> dict[str, Any]:
         """Return the origin of a message, as rclpy's callbacks get it."""
-        _, sample_info, arrived_ns, received = taken
+        _, gid, sequence, source_ns, arrived_ns, received = taken
         return {
-            "source_timestamp": sample_info.source_ns,
+            "source_timestamp": source_ns,
             "received_timestamp": arrived_ns,
-            "publication_sequence_number": sample_info.sequence,
+            "publication_sequence_number": sequence,
             "reception_sequence_number": received,
-            "publisher_gid": {
-                "implementation_identifier": "rmw_zenoh_cpp",
-                "data": sample_info.gid,
-            },
+            "publisher_gid": {"implementation_identifier": "rmw_zenoh_cpp", "data": gid},
         }
 
     def _complain(self, error: DecodeError) -> None:
@@ -349,15 +342,15 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
             Drop.MALFORMED, self.name, f"not a message of this type ({error})"
         )
 
-    def _has_expired(self, sample_info: SampleInfo, arrived_ns: int) -> bool:
+    def _has_expired(self, gid: bytes, source_ns: int, arrived_ns: int) -> bool:
         """Return whether the lifespan that the publisher gave its messages has passed."""
-        lifespan_ns = self._lifespans.get(sample_info.gid)
+        lifespan_ns = self._lifespans.get(gid)
         if lifespan_ns is None:
-            lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
-            self._lifespans.put(sample_info.gid, lifespan_ns)
+            lifespan_ns = self.io.call(self._lifespan_of, gid)
+            self._lifespans.put(gid, lifespan_ns)
         if not lifespan_ns:
             return False
-        return expires_ns(sample_info.source_ns, arrived_ns, lifespan_ns) <= now_ns()
+        return expires_ns(source_ns, arrived_ns, lifespan_ns) <= now_ns()
 
     def _lifespan_of(self, gid: bytes) -> int:
         for publisher in self.bare.matched():

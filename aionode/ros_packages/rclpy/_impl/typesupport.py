@@ -10,6 +10,7 @@ from rosidl_generator_py import (
     aionode_class,
     decoder_of,
     encode,
+    encoder_of,
     message_class,
     ros_type_name,
 )
@@ -32,7 +33,7 @@ class MessageSupport:
     """Encodes messages of one class for sending.
 
     Attributes:
-        encode: Returns a message as bytes.
+        encode: Returns a message as bytes, also one of a subclass.
         wire_type: The class of its encoded messages, for the core.
     """
 
@@ -41,6 +42,11 @@ class MessageSupport:
     def __init__(self, msg_type: Any, wire_type: Any) -> None:
         self.wire_type = wire_type
         self._msg_type = msg_type
+
+    @cached_property
+    def encode_exactly(self) -> Callable[[Any], bytes]:
+        """Returns a message of this very class as bytes."""
+        return encoder_of(self._msg_type)
 
     @cached_property
     def decode(self) -> Callable[[bytes], Any]:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import _signal  # type: ignore[import-not-found]  # it has no stub
 import os
 import signal
-from threading import current_thread, get_ident, local, main_thread
+from threading import current_thread, get_ident, main_thread
 from typing import TYPE_CHECKING, Any
 
 from rclpy._impl.errors import RCLError
@@ -23,28 +23,19 @@ from rclpy._impl.errors import RCLError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["begin", "current", "end", "own_handlers", "postpone", "postponed", "refuse_to_wait"]
+__all__ = ["begin", "begun", "end", "own_handlers", "postpone", "postponed", "refuse_to_wait"]
 
 UNCATCHABLE = {getattr(signal, name, None) for name in ("SIGKILL", "SIGSTOP")}
 
 NUMBERS = sorted(int(number) for number in signal.valid_signals() if number not in UNCATCHABLE)
 
 
-class Uninterrupted(local):
-    """The state of such work in this thread.
-
-    Attributes:
-        active: Whether it does any, or checks whether it may.
-        begun: Whether it does any.
-        rouse: Ends the wait within the work, if there is one.
-    """
-
-    active = False
-    begun = False
-    rouse: Callable[[], None] | None = None
+def looks() -> None:
+    """Stand for what ends the wait of a thread that checks whether it may do such work."""
 
 
-current = Uninterrupted()
+working: dict[int, Callable[[], None] | None] = {}
+"""The threads that do such work, or check whether they may, and what ends the wait of each."""
 
 own_handlers: set[Any] = set()
 """The handlers of signals that call `postpone` first."""
@@ -83,40 +74,47 @@ def note_change(install: Callable[..., Any]) -> Callable[..., Any]:
 _signal.signal = note_change(_signal.signal)
 
 
-def begin() -> bool:
+def begin(rouse: Callable[[], None] | None = None) -> bool:
     """Begin work that nothing may interrupt; `end` has to follow.
+
+    Args:
+        rouse: Ends the wait within the work, if there is one.
 
     Returns:
         Whether it may be done in this thread: not in a finalizer that interrupts such work, and not
         where a handler of the program may interrupt it.
     """
-    if current.active:
+    ident = get_ident()
+    if ident in working:
         return False
-    # Before the check: from here on rclpy's handler postpones itself, and with it the program's
-    # code that it calls and that might install another handler.
-    current.active = True
     alone = False
     try:
+        # Before the check: from here on rclpy's handler postpones itself, and with it the program's
+        # code that it calls and that might install another handler.
+        working[ident] = looks
         harmless = Handlers.harmless
-        alone = (
-            harmless
-            or get_ident() != Handlers.thread
-            or (harmless is None and handlers_are_harmless())
+        alone = bool(
+            harmless or ident != Handlers.thread or (harmless is None and handlers_are_harmless())
         )
     finally:
         # A handler of the program that interrupts the check may wait: the work does not begin then.
-        current.begun = alone
-        if not alone:
-            current.active = False
+        if alone:
+            working[ident] = rouse
+        else:
+            working.pop(ident, None)
     if not alone and postponed:
         call_postponed()
     return alone
 
 
+def begun() -> bool:
+    """Return whether this thread does such work."""
+    return working.get(get_ident(), looks) is not looks
+
+
 def end() -> None:
     """End the work, and call what was postponed meanwhile."""
-    current.rouse = None
-    current.begun = current.active = False
+    working.pop(get_ident(), None)
     if postponed:
         call_postponed()
 
@@ -132,6 +130,8 @@ def handlers_are_harmless() -> bool:
 def note_main_thread() -> None:
     """Note the main thread; called in a forked child, where it is the one that has forked."""
     Handlers.thread = main_thread().ident
+    for ident in working.keys() - {Handlers.thread}:
+        del working[ident]
 
 
 if hasattr(os, "register_at_fork"):  # not on Windows
@@ -144,11 +144,13 @@ def postpone(action: Callable[[], object]) -> bool:
     Returns:
         Whether it will be called.
     """
-    if not current.active:
+    ident = get_ident()
+    if ident not in working:
         return False
     postponed.append(action)
-    if current.rouse is not None:
-        current.rouse()
+    rouse = working[ident]
+    if rouse is not None:
+        rouse()
     return True
 
 
@@ -164,7 +166,7 @@ def refuse_to_wait() -> None:
     Raises:
         RCLError: it is in progress in this thread: a finalizer has interrupted it.
     """
-    if current.begun:
+    if begun():
         raise RCLError(
             "a finalizer interrupted a thread that sends or receives, and cannot wait for an "
             "answer; publish there, or wait later, in a callback"

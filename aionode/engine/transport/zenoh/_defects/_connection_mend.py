@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
+from aionode._process.concurrency import running_loop
 from aionode._process.later import Later
 from aionode.engine.transport.zenoh._defects._switch import is_mended
 from aionode.engine.transport.zenoh.connections.config import gossip_endpoints
@@ -63,7 +63,7 @@ class ConnectionMend(ABC):
         if (
             self._session is not None and change.kind != zenoh.WhatAmI.CLIENT
         ):  # clients reconnect themselves
-            self._take_change(change, asyncio.get_running_loop().time())
+            self._take_change(change, running_loop().time())
 
     @abstractmethod
     def _take_change(self, change: ConnectionChange, now_s: float) -> None:

@@ -22,7 +22,6 @@ Workaround:
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import os
 import socket
@@ -33,6 +32,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 from msgspec import Struct
 
+from aionode._process.concurrency import running_loop
 from aionode.engine.transport.network import DiscoveryRange, pid_of
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._connection_mend import (
@@ -295,7 +295,7 @@ class Recovery(ConnectionMend):
         if self._checks:
             self._checks -= 1
             self._watcher.check()
-        now_s = asyncio.get_running_loop().time()
+        now_s = running_loop().time()
         if not self._later.waits and now_s < self._until_s:
             self._compare_in(FIRST_S if missing else AGAIN_S)
 

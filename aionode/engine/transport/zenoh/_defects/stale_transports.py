@@ -15,12 +15,12 @@ Workaround:
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import threading
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.concurrency import running_loop
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._connection_mend import (
     ATTEMPTS,
@@ -101,7 +101,7 @@ class StaleTransports(ConnectionMend):
         # When many connect at once, tokens take longer, and a cut slows everything down further.
         declared_s = self._declared_s()
         wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
-        if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
+        if self._returned and running_loop().time() - self._changed_s < wait_s:
             self._check_in(declared_s / 2)
             return
         silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import zenoh
 
+from aionode._process.concurrency import running_loop
 from aionode.engine.transport.zenoh.connections.handlers import direct, translated
 from aionode.engine.wire._bridge import (
     BRIDGES,
@@ -185,7 +186,7 @@ class BridgeWatcher:
     def _ask(self, zid: str) -> None:
         """Ask a new bridge for its key prefix; until then it is not in the graph."""
         if self._session is not None and zid not in self._asked:
-            asked = self._asked[zid] = asyncio.get_running_loop().create_future()
+            asked = self._asked[zid] = running_loop().create_future()
             self._ask_again(zid, asked, iter(AGAIN_S))
 
     def _ask_again(self, zid: str, asked: asyncio.Future[None], delays_s: Iterator[float]) -> None:
@@ -202,7 +203,7 @@ class BridgeWatcher:
             return
         delay_s = None if replies else next(delays_s, None)
         if delay_s is not None:
-            loop = asyncio.get_running_loop()
+            loop = running_loop()
             loop.call_later(delay_s, self._ask_again, zid, asked, delays_s)
             return
         import json  # nodes that meet no bridge need none
@@ -267,7 +268,7 @@ class BridgeWatcher:
 
     async def _replies(self, get: Callable[..., Any], key: str) -> Replies:
         """Return the replies to a query."""
-        done: asyncio.Future[Replies] = asyncio.get_running_loop().create_future()
+        done: asyncio.Future[Replies] = running_loop().create_future()
 
         def answer(replies: Replies) -> None:
             if not done.done():

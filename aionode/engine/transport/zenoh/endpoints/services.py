@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 
+from aionode._process.concurrency import running_loop
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Request, Requester, SampleInfo
 from aionode.engine.transport.drops import Drop
@@ -482,7 +482,7 @@ class ZenohCall:
             return False
         delay_s = AGAIN_S[self._attempts]
         self._attempts += 1
-        asyncio.get_running_loop().call_later(delay_s, self._go_again)
+        running_loop().call_later(delay_s, self._go_again)
         return True
 
     def _go_again(self) -> None:

@@ -15,6 +15,7 @@ import zenoh
 from msgspec import Struct
 from msgspec.structs import replace
 
+from aionode._process.concurrency import running_loop
 from aionode.clock import perf_ns
 from aionode.engine.transport.network import network_from, pid_of
 from aionode.engine.transport.send_thread import start_thread
@@ -90,7 +91,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     If cancelled, the result is passed to `late`, if given.
     """
-    loop = asyncio.get_running_loop()
+    loop = running_loop()
     done: asyncio.Future[T] = (
         loop.create_future()
     )  # belongs to the loop; the thread calls `deliver` there
