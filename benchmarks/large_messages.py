@@ -6,7 +6,9 @@
   thread touched (its page faults), and the longest processor time of a single callback of the loop.
 - An image of 4 MB goes over links to one process and to five, in turns; each reads all of it, or
   nothing, and answers with a small message. For each image: the processor time of the publisher,
-  and the time until the last answer. An image of 10 bytes shows how much of it is for any message.
+  and the time until the last answer. An image of 10 bytes shows how much of it is for any message,
+  and "bare" how much for any program: a copy into shared memory, and a line in a pipe to each
+  reader and back.
 
 To compare two versions, run it in turns with ``PYTHONPATH`` set to either.
 
@@ -21,6 +23,7 @@ import asyncio
 import json
 import logging
 import mmap
+import os
 import resource
 import statistics
 import subprocess
@@ -234,14 +237,54 @@ class Readers:
         return times
 
 
+def bare_reader(path: str, *, reads: bool) -> None:
+    """Answer each line on stdin, for which there is an image in shared memory."""
+    with open(path, "rb") as file:  # noqa: PTH123  # a descriptor of another process
+        pixels = np.frombuffer(mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ), np.uint64)
+    print("ready", flush=True)
+    for _ in iter(sys.stdin.readline, ""):
+        print(int(pixels.max() % 2) if reads else 0, flush=True)
+
+
+class BareReaders:
+    """The same without aionode and an event loop."""
+
+    def __init__(self, readers: int, reads: str, size: int, parts: ExitStack) -> None:
+        descriptor = os.memfd_create("bare")
+        os.ftruncate(descriptor, size)
+        self._shared = mmap.mmap(descriptor, size)
+        path = f"/proc/{os.getpid()}/fd/{descriptor}"
+        self._readers = [parts.enter_context(part("bare", path, reads)) for _ in range(readers)]
+
+    async def play(self, image: Image, count: int) -> list[tuple[int, int]]:
+        """Return the processor time of each image, and the time to the last answer."""
+        times = []
+        for _ in range(count):
+            await asyncio.sleep(1 / RATE_HZ)
+            began_ns, busy_ns = time.perf_counter_ns(), time.thread_time_ns()
+            self._shared[:] = image.data
+            for process in self._readers:
+                assert process.stdin is not None  # noqa: S101  # a pipe
+                process.stdin.write("\n")
+                process.stdin.flush()
+            busy_ns = time.thread_time_ns() - busy_ns
+            for process in self._readers:
+                assert process.stdout is not None  # noqa: S101  # a pipe
+                process.stdout.readline()
+            times.append((busy_ns, time.perf_counter_ns() - began_ns))
+        return times
+
+
 async def many_readers(rounds: int) -> dict[tuple[int, str], tuple[float, float]]:
     """Return both times in milliseconds, by the number of readers and what they read.
 
     For "small" they get an image of 10 bytes, and otherwise one of 4 MB.
     """
-    images = {"small": image_of(10), "nothing": image_of(4_000_000), "all": image_of(4_000_000)}
+    large = image_of(4_000_000)
+    images = {"small": image_of(10), "nothing": large, "all": large}
+    bare = {"bare nothing": "nothing", "bare all": "all"}
     found: dict[tuple[int, str], list[tuple[int, int]]] = {}
-    players: dict[tuple[int, str], Readers] = {}
+    players: dict[tuple[int, str], Readers | BareReaders] = {}
     with ExitStack() as parts:
         async with Context(domain_id=DOMAIN_ID) as context, node_of("camera", context) as node:
             for readers in (1, 5):
@@ -250,11 +293,14 @@ async def many_readers(rounds: int) -> dict[tuple[int, str], tuple[float, float]
                     players[readers, reads] = Readers(node, topic, readers)
                     for _ in range(readers):
                         parts.enter_context(part("reader", topic, reads))
+                for name, reads in bare.items():
+                    players[readers, name] = BareReaders(readers, reads, 4_000_000, parts)
             for (readers, _), player in players.items():
-                await player.publisher.wait_for_subscribers(readers)
+                if isinstance(player, Readers):
+                    await player.publisher.wait_for_subscribers(readers)
             for turn in range(rounds + 1):
                 for key, player in players.items():
-                    times = await player.play(images[key[1]], 10)
+                    times = await player.play(images.get(key[1], large), 10)
                     if turn:  # the first one hands over to the link
                         found.setdefault(key, []).extend(times[2:])
     return {
@@ -277,7 +323,9 @@ def main() -> None:
     logging.disable(logging.WARNING)  # this machine may be busy
     if args.part:
         kind, first, second = args.part
-        if kind == "robot":
+        if kind == "bare":
+            bare_reader(first, reads=second == "all")
+        elif kind == "robot":
             asyncio.run(robot(first, int(second)))
         else:
             asyncio.run(reader(first, reads=second == "all"))
@@ -297,6 +345,8 @@ def main() -> None:
         "small": "of 10 bytes instead",
         "nothing": "of which nothing is read",
         "all": "all of which is read",
+        "bare nothing": "bare, nothing is read",
+        "bare all": "bare, all is read",
     }
     times = asyncio.run(many_readers(3 if args.quick else 10))
     for (readers, reads), (busy_ms, all_ms) in times.items():
