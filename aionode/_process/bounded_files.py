@@ -29,14 +29,14 @@ pipes.
 """
 
 
-def read_file(path: str | os.PathLike[str], most: int = MAX_FILE) -> bytes:
+def read_file(path: str | os.PathLike[str], max_bytes: int = MAX_FILE) -> bytes:
     """Read a configuration file.
 
     A pipe without a writer would block forever, and a device may have no end.
 
     Args:
         path: The file.
-        most: The largest size in bytes.
+        max_bytes: The largest size in bytes.
 
     Raises:
         OSError: it cannot be read, is not a file, is larger, or is the pointer of Git LFS.
@@ -53,12 +53,12 @@ def read_file(path: str | os.PathLike[str], most: int = MAX_FILE) -> bytes:
             raise OSError(errno.EINVAL, "a pipe or a device, not a file", name)
         with os.fdopen(descriptor, "rb", closefd=False) as file:
             content = b""
-            while len(content) <= most and (piece := file.read(max(PIECE, len(content)))):
+            while len(content) <= max_bytes and (piece := file.read(max(PIECE, len(content)))):
                 content += piece
     finally:
         os.close(descriptor)
-    if len(content) > most:
-        raise OSError(errno.EFBIG, f"more than {most} bytes", name)
+    if len(content) > max_bytes:
+        raise OSError(errno.EFBIG, f"more than {max_bytes} bytes", name)
     if is_lfs_pointer(content):
         raise OSError(errno.EINVAL, LFS_POINTER, name)
     return content

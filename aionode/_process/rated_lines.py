@@ -38,12 +38,12 @@ class RatedLines(Generic[K]):
 
     Args:
         now_ns: Returns the time of a steady clock, in nanoseconds.
-        most: Number of subjects that are remembered, since others may invent any.
+        max_subjects: Number of subjects that are remembered, since others may invent any.
     """
 
-    def __init__(self, now_ns: Callable[[], int], most: int = 1_000) -> None:
+    def __init__(self, now_ns: Callable[[], int], max_subjects: int = 1_000) -> None:
         self._now_ns = now_ns
-        self._lines: Recent[K, Line] = Recent(most)
+        self._lines: Recent[K, Line] = Recent(max_subjects)
 
     def note(
         self, subject: K, count: int = 1, *, has_room: Callable[[], bool] | None = None

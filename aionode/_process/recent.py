@@ -17,19 +17,19 @@ class Recent(dict[K, V]):
     existing key may be set as in any dict, which is faster.
 
     Args:
-        most: The maximum number of keys.
+        max_keys: The maximum number of keys.
     """
 
-    __slots__ = ("_most",)
+    __slots__ = ("_max_keys",)
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, max_keys: int) -> None:
         super().__init__()
-        self._most = most
+        self._max_keys = max_keys
 
     def put(self, key: K, value: V) -> V | None:
         """Set the value of a key; return the value of the evicted key, if any."""
         forgotten = None
-        if key not in self and len(self) >= self._most:
+        if key not in self and len(self) >= self._max_keys:
             forgotten = self.pop(next(iter(self)), None)  # another thread may have removed it
         self[key] = value
         return forgotten

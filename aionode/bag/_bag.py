@@ -248,15 +248,15 @@ class Batches(Generic[T]):
     Args:
         records: The records.
         size_of: The size of each in bytes.
-        most: Maximum number of records per batch.
+        max_records: Maximum number of records per batch.
     """
 
     def __init__(
-        self, records: Iterator[T], size_of: Callable[[T], int], most: int = BATCH
+        self, records: Iterator[T], size_of: Callable[[T], int], max_records: int = BATCH
     ) -> None:
         self._records = records
         self._size_of = size_of
-        self._most = most
+        self._max_records = max_records
         self._error: BagError | None = None
 
     def next(self) -> list[T]:
@@ -272,7 +272,7 @@ class Batches(Generic[T]):
         batch: list[T] = []
         size = 0
         try:
-            for record in islice(self._records, self._most):
+            for record in islice(self._records, self._max_records):
                 batch.append(record)
                 if not len(batch) % TURN:
                     sleep(0)

@@ -211,14 +211,14 @@ def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
     return TypeText(name, bound, "unbounded")
 
 
-def limit(text: str, at: int, what: str, most: int) -> int:
+def limit(text: str, at: int, what: str, max_value: int) -> int:
     """Parse the size or bound in `text`; raise `LineError` if it is invalid."""
     text = text.lstrip("0")
     if not text:
         number = "" if what == "a bound" else "a number of "
         raise LineError(at, f"{what} is {number}at least 1")
-    if len(text) > len(str(most)) or int(text) > most:  # int() refuses thousands of digits
-        raise LineError(at, f"{what} is at most {most} here")
+    if len(text) > len(str(max_value)) or int(text) > max_value:  # int() refuses too many digits
+        raise LineError(at, f"{what} is at most {max_value} here")
     return int(text)
 
 

@@ -71,19 +71,19 @@ class RecentParts(Recent[K, V]):
     """Parts of records, of which the oldest are evicted by their number and their size.
 
     Args:
-        most: The maximum number of keys.
+        max_keys: The maximum number of keys.
     """
 
     __slots__ = ("_bytes", "_sizes")
 
-    def __init__(self, most: int) -> None:
-        super().__init__(most)
+    def __init__(self, max_keys: int) -> None:
+        super().__init__(max_keys)
         self._sizes: dict[K, int] = {}
         self._bytes = 0
 
     def put_part(self, key: K, value: V, part: Any) -> None:
         """Set the value of a key, which is as large as a part of a record."""
-        if key not in self and len(self) == self._most:
+        if key not in self and len(self) == self._max_keys:
             self._evict()
         size = len(msgspec.json.encode(part))
         self._bytes += size - self._sizes.get(key, 0)

@@ -246,15 +246,15 @@ def refuse_large(size_bytes: int, what: str) -> None:
         )
 
 
-def refuse_many(items: Sequence[object], most: int = MAX_NAMES) -> None:
+def refuse_many(items: Sequence[object], max_items: int = MAX_NAMES) -> None:
     """Refuse a request with more items than any tool sends.
 
     Raises:
-        RequestRefusedError: there are more than `most`.
+        RequestRefusedError: there are more than `max_items`.
     """
-    if len(items) > most:
+    if len(items) > max_items:
         raise RequestRefusedError(
-            f"the request has {len(items)} names, at most {most} fit; ask in several requests"
+            f"the request has {len(items)} names, at most {max_items} fit; ask in several requests"
         )
 
 

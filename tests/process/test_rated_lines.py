@@ -52,7 +52,7 @@ def test_a_flood_is_said_less_and_less_often() -> None:
 
 def test_what_is_left_out_for_lack_of_room_is_not_remembered() -> None:
     """A flood of invented subjects displaces none that was logged."""
-    lines: RatedLines[int] = RatedLines(lambda: 0, most=1)
+    lines: RatedLines[int] = RatedLines(lambda: 0, max_subjects=1)
     assert lines.note(0) == ""
     for subject in range(1, 10):
         assert lines.note(subject, has_room=lambda: False) is None

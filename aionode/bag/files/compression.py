@@ -55,11 +55,11 @@ def limit_of(largest: int, ratio: int, compressed_size: int) -> int:
 
 def expect_plain_size(size: int, compressed_size: int) -> None:
     """Raise `TooLargeError` if the declared size of a part is implausible."""
-    most = limit_of(MAX_PART, PART_RATIO, compressed_size)
-    if size > most:
+    max_bytes = limit_of(MAX_PART, PART_RATIO, compressed_size)
+    if size > max_bytes:
         raise TooLargeError(
             f"{compressed_size} bytes claim to be {size} when decompressed, "
-            f"but at most {most} are allowed"
+            f"but at most {max_bytes} are allowed"
         )
 
 
@@ -136,12 +136,12 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
     return plain, stack.enter_context(plain.open("rb"))
 
 
-def write_plain(path: Path, compressed: IO[bytes], plain: Path, most: int) -> None:
-    """Decompress a file into another one, up to a size of `most` bytes."""
-    problem = f"it decompresses to more than {most} bytes, which is implausible for its size"
+def write_plain(path: Path, compressed: IO[bytes], plain: Path, max_bytes: int) -> None:
+    """Decompress a file into another one, up to a size of `max_bytes` bytes."""
+    problem = f"it decompresses to more than {max_bytes} bytes, which is implausible for its size"
     with plain.open("wb") as out:
         reader = zstandard.ZstdDecompressor().stream_reader(compressed, read_across_frames=True)
         while piece := reader.read(PIECE):
-            if out.tell() + len(piece) > most:
+            if out.tell() + len(piece) > max_bytes:
                 raise BagError(str(path), problem, f"{LIMIT_VARIABLE} raises the limit")
             out.write(piece)

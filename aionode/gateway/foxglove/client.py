@@ -140,8 +140,12 @@ class Client:
     async def take(self, frame: bytes | str) -> None:
         """Handle a frame; failures are reported to the client as a status."""
         try:
-            most = self._session.rights.limits.frame_parts
-            asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
+            max_parts = self._session.rights.limits.frame_parts
+            asked = (
+                frames.op_of(frame, max_parts)
+                if isinstance(frame, str)
+                else frames.binary_of(frame)
+            )
         except MessageError as error:
             self.malformed += 1
             self._session.rights.refused += 1
@@ -291,7 +295,7 @@ class Client:
         self._session.outbox.send(frames.response_frame(call, data))
 
 
-def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
+def values_of(encoding: str, data: memoryview, max_parts: int) -> Any:
     """Return the values of a message or request: CDR unchanged, JSON decoded.
 
     Raises:
@@ -299,7 +303,7 @@ def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
     """
     if encoding == "cdr":
         return bytes(data)
-    return decoded(data, most_parts, "message")
+    return decoded(data, max_parts, "message")
 
 
 class Connections:

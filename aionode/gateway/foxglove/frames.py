@@ -166,7 +166,7 @@ ClientOp: TypeAlias = (
 DECODER: Final = msgspec.json.Decoder(ClientOp)
 
 
-def op_of(frame: str, most_parts: int) -> Op:
+def op_of(frame: str, max_parts: int) -> Op:
     """Return the op in a text frame.
 
     Raises:
@@ -174,7 +174,7 @@ def op_of(frame: str, most_parts: int) -> Op:
     """
     try:
         octets = frame.encode()
-        check_parts(octets, most_parts)
+        check_parts(octets, max_parts)
         op: Op = DECODER.decode(octets)
     except (msgspec.DecodeError, RecursionError, UnicodeError) as error:
         raise MessageError("frame", f"{error}") from None

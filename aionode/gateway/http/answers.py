@@ -207,8 +207,8 @@ class Asked:
         except errors.MessageError as error:
             raise HTTPException(400, str(error)) from None
 
-    def number(self, name: str, default: float, most: float) -> float:
-        """Return a number from the query, between 0 and `most`.
+    def number(self, name: str, default: float, max_value: float) -> float:
+        """Return a number from the query, between 0 and `max_value`.
 
         Raises:
             HTTPException: it is not a number in that range (400).
@@ -220,8 +220,8 @@ class Asked:
             number = float(text)
         except ValueError:
             number = math.nan
-        if not 0 <= number <= most:
-            text = f"{name}={text[:40]!r}: use a number from 0 to {most:g}"
+        if not 0 <= number <= max_value:
+            text = f"{name}={text[:40]!r}: use a number from 0 to {max_value:g}"
             raise HTTPException(400, text)
         return number
 

@@ -54,15 +54,15 @@ def failure(error: Exception) -> types.CallToolResult:
     )
 
 
-def bounded(values: Mapping[str, Any], most_bytes: int) -> dict[str, Any]:
+def bounded(values: Mapping[str, Any], max_bytes: int) -> dict[str, Any]:
     """Return values shortened so that their JSON fits, without the ends of long lists and texts."""
     for items, characters in SIZES:
         # Each part takes a byte at least: with more of them, these sizes do not fit.
-        parts = iter(range(most_bytes))
+        parts = iter(range(max_bytes))
         fitting = {str(key): cut(value, items, characters, parts) for key, value in values.items()}
-        if len(msgspec.json.encode(fitting)) <= most_bytes:
+        if len(msgspec.json.encode(fitting)) <= max_bytes:
             return fitting
-    return {"left_out": f"the answer has more than {most_bytes} bytes; request less of it"}
+    return {"left_out": f"the answer has more than {max_bytes} bytes; request less of it"}
 
 
 def cut(value: Any, items: int, characters: int, parts: Iterator[int], level: int = 0) -> Any:

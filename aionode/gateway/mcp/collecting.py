@@ -34,15 +34,15 @@ class Arrivals:
     """Keeps the newest messages as they arrive.
 
     Args:
-        most: How many.
+        max_messages: How many.
 
     Attributes:
         count: How many have arrived.
     """
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, max_messages: int) -> None:
         self.count = 0
-        self._kept: deque[Received] = deque(maxlen=most)
+        self._kept: deque[Received] = deque(maxlen=max_messages)
         self._arrived = asyncio.Event()
 
     def put(self, received: Received) -> None:

@@ -207,16 +207,16 @@ class Mover:
         return self.problem or "done"
 
 
-def check_seconds(seconds: float, most: float, limit: str) -> None:
+def check_seconds(seconds: float, max_sec: float, limit: str) -> None:
     """Refuse a time longer than the policy allows.
 
     Raises:
         RefusedError: it is too long; the code is ``out_of_limits``.
     """
-    if seconds > most:
+    if seconds > max_sec:
         raise RefusedError(
             "seconds",
-            f"{seconds:g} s, at most {most:g} s are allowed by {limit} of the policy; move in "
+            f"{seconds:g} s, at most {max_sec:g} s are allowed by {limit} of the policy; move in "
             "several steps, and look in between",
             "out_of_limits",
         )
@@ -287,9 +287,9 @@ async def run_goal(
 ) -> types.CallToolResult:
     """Send a goal, wait for its end, and report progress meanwhile."""
     session = call.session
-    most = session.rights.limits.goal_sec
-    seconds = most if seconds is None else seconds
-    check_seconds(seconds, most, "goal_sec")
+    max_sec = session.rights.limits.goal_sec
+    seconds = max_sec if seconds is None else seconds
+    check_seconds(seconds, max_sec, "goal_sec")
     action = session.topic_name(action)
     session.rights.decide("goal", action, "")
     type_name = session.graph.type_of(action, "action")

@@ -200,9 +200,9 @@ async def read(call: Call, given: Read) -> types.CallToolResult:
     return answer({"topic": topic, "messages": messages})
 
 
-def shown(received: Received, most_bytes: int) -> dict[str, Any]:
+def shown(received: Received, max_bytes: int) -> dict[str, Any]:
     """Return a message that has arrived, limited in bytes."""
-    return {"time": round(received.time_ns / 1e9, 3), **summarize(received.message, most_bytes)}
+    return {"time": round(received.time_ns / 1e9, 3), **summarize(received.message, max_bytes)}
 
 
 def nothing_came(session: Session, topic: str, seconds: float) -> ToolError:
@@ -212,9 +212,9 @@ def nothing_came(session: Session, topic: str, seconds: float) -> ToolError:
     return ToolError(topic, f"no message within {seconds:g} s; {who}", "timeout")
 
 
-async def subscribed(session: Session, topic: str, most: int) -> Arrivals:
+async def subscribed(session: Session, topic: str, max_messages: int) -> Arrivals:
     """Subscribe to a topic until the call ends."""
-    arrivals = Arrivals(most)
+    arrivals = Arrivals(max_messages)
     await session.subscribe(topic, frame=arrivals.put, key=arrivals, depth=1)
     return arrivals
 

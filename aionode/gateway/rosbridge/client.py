@@ -72,7 +72,7 @@ class Client:
         self._link = link = Link(session)
         self._lanes = lanes
         self._fragments = FragmentStore(session.rights.limits.frame_bytes)
-        self._most_parts = session.rights.limits.frame_parts
+        self._max_parts = session.rights.limits.frame_parts
         self._offers = offers = Offers(link)
         topics, calls = Topics(link), Calls(link, lanes)
         self.malformed = 0
@@ -124,14 +124,14 @@ class Client:
         Raises:
             MessageError: the frame, or the message of its fragments, is not a valid op.
         """
-        op = op_of(frame, self._most_parts)
+        op = op_of(frame, self._max_parts)
         if op["op"] != "fragment":
             return op
         whole = self._fragments.add(op)
         if whole is None:
             return None
         await self._lanes.admit(whole)
-        op = op_of(whole, self._most_parts)
+        op = op_of(whole, self._max_parts)
         if op["op"] == "fragment":
             raise MessageError("fragment.data", "it contains further fragments")
         return op

@@ -56,13 +56,13 @@ OVERHEAD: Final = 20
 """Bytes that a fragment counts besides its content, since even empty ones take memory."""
 
 
-def op_of(frame: str | bytes, most_parts: int) -> Op:
+def op_of(frame: str | bytes, max_parts: int) -> Op:
     """Parse the op in a frame, which is one JSON object.
 
     Raises:
         MessageError: the frame is anything else.
     """
-    op = decoded(frame, most_parts)
+    op = decoded(frame, max_parts)
     if not isinstance(op, dict):
         raise MessageError("frame", "not a JSON object, as every frame of rosbridge must be")
     if not isinstance(op.get("op"), str):
@@ -70,14 +70,14 @@ def op_of(frame: str | bytes, most_parts: int) -> Op:
     return op
 
 
-def text(op: Op, name: str, default: str | None = None, most: int | None = MAX_NAME) -> str:
+def text(op: Op, name: str, default: str | None = None, max_length: int | None = MAX_NAME) -> str:
     """Return a field of text.
 
     Args:
         op: The op.
         name: The name of the field.
         default: The value of a missing field; None if the field is required.
-        most: The longest text, in characters.
+        max_length: The longest text, in characters.
 
     Raises:
         MessageError: the field is missing without a default, is not text, or is too long.
@@ -87,9 +87,9 @@ def text(op: Op, name: str, default: str | None = None, most: int | None = MAX_N
         return default
     if not isinstance(value, str):
         raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}; use text")
-    if most is not None and len(value) > most:
+    if max_length is not None and len(value) > max_length:
         raise MessageError(
-            f"{op['op']}.{name}", f"{len(value)} characters, at most {most} are allowed"
+            f"{op['op']}.{name}", f"{len(value)} characters, at most {max_length} are allowed"
         )
     return value
 
@@ -264,7 +264,7 @@ class FragmentStore:
             MessageError: the fragment is invalid, or too many bytes are kept; then all fragments
                 are discarded.
         """
-        message_id, data = text(op, "id"), text(op, "data", most=None)
+        message_id, data = text(op, "id"), text(op, "data", max_length=None)
         num, total = op.get("num"), op.get("total")
         if type(total) is not int or not 0 < total <= MAX_FRAGMENTS:
             raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MAX_FRAGMENTS}")

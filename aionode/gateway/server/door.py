@@ -231,7 +231,7 @@ async def preflight(send: Send) -> None:
     await send({"type": "http.response.body", "body": b""})
 
 
-def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
+def limit_body(scope: Message, receive: Receive, max_bytes: int) -> Receive:
     """Return a `receive` that refuses request bodies above a size."""
     if scope["type"] != "http":
         return receive
@@ -239,8 +239,8 @@ def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
     declared = next((int(size) for name, size in scope["headers"] if name == b"content-length"), 0)
 
     def check(size: int) -> None:
-        if size > most:
-            raise RefusedError("request", f"its body has more than {most} bytes", "too_large")
+        if size > max_bytes:
+            raise RefusedError("request", f"its body has more than {max_bytes} bytes", "too_large")
 
     async def receive_limited() -> Message:
         nonlocal received

@@ -64,19 +64,19 @@ async def read_asset(session: Session, name: str) -> bytes:
     rights = session.rights
     with rights.one_call("asset", name):
         rule = (await rights.allow("asset", name, "", None)).rule
-        most = MAX_BYTES if rule is None or rule.max_bytes is None else rule.max_bytes
+        max_bytes = MAX_BYTES if rule is None or rule.max_bytes is None else rule.max_bytes
         try:
-            return await run_in_thread(partial(content_of, package, parts, most))
+            return await run_in_thread(partial(content_of, package, parts, max_bytes))
         except (PackageNotFoundError, OSError) as error:
             if isinstance(error, OSError) and error.errno == errno.EFBIG:
-                reason = f"it has more than {most} bytes, the max_bytes of its rule"
+                reason = f"it has more than {max_bytes} bytes, the max_bytes of its rule"
                 raise rights.refusal("asset", name, reason, "too_large") from None
             is_pointer = isinstance(error, OSError) and error.strerror == LFS_POINTER
             problem = f"it is {LFS_POINTER}" if is_pointer else "the package has no such file"
             raise FileNotFoundError(f"{name[:200]}: {problem}") from None
 
 
-def content_of(package: str, parts: list[str], most: int) -> bytes:
+def content_of(package: str, parts: list[str], max_bytes: int) -> bytes:
     """Return the content of a file in the share folder of a package.
 
     Raises:
@@ -87,4 +87,4 @@ def content_of(package: str, parts: list[str], most: int) -> bytes:
     file = share.joinpath(*parts).resolve(strict=True)
     if not file.is_relative_to(share) and package_of(file) != package:
         raise FileNotFoundError(errno.ENOENT, "a link to a file outside the package", str(file))
-    return read_file(file, most)
+    return read_file(file, max_bytes)

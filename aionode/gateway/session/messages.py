@@ -68,23 +68,21 @@ def empty_bytes(cls: Any) -> int:
     return len(cdr.encode(cls())) - CDR_HEADER
 
 
-def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
+def large_message(cls: Any, values: Any, clock: Clock, max_bytes: int) -> Any:
     """Return a message; see `as_message`. Called in a thread.
 
     Raises:
-        MessageError: it takes more than `most_bytes`.
+        MessageError: it takes more than `max_bytes`.
     """
     from aionode.engine.wire import cdr  # few clients send large messages
 
     least = least_bytes(cls, values)
-    if least > most_bytes:  # the empty messages alone would exhaust the memory
+    if least > max_bytes:  # the empty messages alone would exhaust the memory
         raise MessageError(
-            cls.__ros_type__, f"takes {least} bytes, at most {most_bytes} are allowed"
+            cls.__ros_type__, f"takes {least} bytes, at most {max_bytes} are allowed"
         )
     message = as_message(cls, values, clock)
     size = len(cdr.encode(message))
-    if size > most_bytes:
-        raise MessageError(
-            cls.__ros_type__, f"takes {size} bytes, at most {most_bytes} are allowed"
-        )
+    if size > max_bytes:
+        raise MessageError(cls.__ros_type__, f"takes {size} bytes, at most {max_bytes} are allowed")
     return message

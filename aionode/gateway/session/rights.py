@@ -149,7 +149,7 @@ class Rights:
         return any(self.decision("see", name, kind).allowed for kind in type_names or [""])
 
     @contextmanager
-    def one_more(self, verb: str, name: str, what: str, held: Sized, most: int) -> Iterator[None]:
+    def one_more(self, verb: str, name: str, what: str, held: Sized, limit: int) -> Iterator[None]:
         """Count one more of something limited for each client, during the block.
 
         Those still being created count too: several at once would each find the last place.
@@ -159,13 +159,13 @@ class Rights:
             name: The name that it uses.
             what: What is limited.
             held: The ones that exist.
-            most: The limit.
+            limit: The limit.
 
         Raises:
             RefusedError: the limit is reached.
         """
         there_are = len(held) + self._coming[what]
-        if there_are >= most:
+        if there_are >= limit:
             reason = f"the client has {there_are} {what}, which is the limit"
             raise self.refusal(verb, name, reason, "too_many")
         self._coming[what] += 1
@@ -185,13 +185,13 @@ class Rights:
         Raises:
             RefusedError: it is too large.
         """
-        most = None if decision.rule is None else decision.rule.max_bytes
-        if most is None:
+        limit = None if decision.rule is None else decision.rule.max_bytes
+        if limit is None:
             return
         from aionode.engine.wire import cdr  # few rules limit the size
 
-        if len(cdr.encode(message)) > most:
-            raise self.refusal(verb, name, f"it has more than {most} bytes", "too_large")
+        if len(cdr.encode(message)) > limit:
+            raise self.refusal(verb, name, f"it has more than {limit} bytes", "too_large")
 
     def decide_parameter(self, node: str, parameter: Parameter) -> Parameter:
         """Return a parameter that the client may set, clamped to its limits.

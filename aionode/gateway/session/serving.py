@@ -31,7 +31,7 @@ class Served:
 
 
 def serve(
-    node: Node, service: str, cls: Any, answer: Callable[[Any], Awaitable[Any]], most: int
+    node: Node, service: str, cls: Any, answer: Callable[[Any], Awaitable[Any]], limit: int
 ) -> Served:
     """Offer a service whose requests are answered by `answer`, with a concurrency limit."""
 
@@ -39,12 +39,12 @@ def serve(
         return as_message(cls.Response, await answer(request), node.get_clock())
 
     # The caller gets the error; it is the client's, and does not belong in the robot's log.
-    service_server = node.create_service(cls, service, handle, concurrent=most, on_error=ignore)
+    service_server = node.create_service(cls, service, handle, concurrent=limit, on_error=ignore)
     return Served(service_server)
 
 
 def serve_action(
-    node: Node, action: str, cls: Any, execute: Callable[[Any], Awaitable[Any]], most: int
+    node: Node, action: str, cls: Any, execute: Callable[[Any], Awaitable[Any]], limit: int
 ) -> Served:
     """Offer an action whose goals `execute` executes, with a concurrency limit."""
     from aionode.action import ActionServer, CancelResponse  # few clients offer actions
@@ -64,7 +64,7 @@ def serve_action(
         action,
         run,
         cancel_callback=lambda _: CancelResponse.ACCEPT,
-        max_goals=most,
+        max_goals=limit,
         concurrent=True,
         on_error=ignore,
     )

@@ -282,8 +282,8 @@ class Session:
             InvalidTopicNameException: the name is invalid (a ValueError).
         """
         topic = self.topic_name(topic)
-        most = self.rights.limits.subscriptions
-        with self.rights.one_more("subscribe", topic, "subscriptions", self._subscribed, most):
+        limit = self.rights.limits.subscriptions
+        with self.rights.one_more("subscribe", topic, "subscriptions", self._subscribed, limit):
             message_class = await self._type_to("subscribe", topic, type_name)
             await self.rights.allow("subscribe", topic, message_class.__ros_type__, None)
             subscribed = Subscribed(
@@ -317,8 +317,8 @@ class Session:
             return
         if topic == self.robot.audit.topic:
             raise self.rights.refusal("publish", topic, "only the gateway writes it", "not_allowed")
-        what, most = "topics that it publishes", self.rights.limits.advertised
-        with self.rights.one_more("publish", topic, what, self._published, most):
+        what, limit = "topics that it publishes", self.rights.limits.advertised
+        with self.rights.one_more("publish", topic, what, self._published, limit):
             message_class = await self._type_to("publish", topic, type_name)
             decision = self.rights.decide("publish", topic, message_class.__ros_type__)
             if topic in self._published:  # advertised twice at the same time
@@ -647,8 +647,8 @@ class Session:
         work: Callable[[Any], Awaitable[Any]],
     ) -> Served:
         """Offer a service or action; its type is looked up if the policy may allow it."""
-        most = self.rights.limits.advertised
-        with self.rights.one_more("advertise", name, "services and actions", self._served, most):
+        limit = self.rights.limits.advertised
+        with self.rights.one_more("advertise", name, "services and actions", self._served, limit):
             self.rights.decide("advertise", name, "")
             cls = await find(type_name)
             await self.rights.allow("advertise", name, cls.__ros_type__, None)

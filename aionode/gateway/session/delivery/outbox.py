@@ -64,7 +64,7 @@ class Outbox:
     dropped and counted.
 
     Args:
-        most_bytes: The most bytes that may wait. Beyond that, the topic with the most waiting bytes
+        max_bytes: The most bytes that may wait. Beyond that, the topic with the most waiting bytes
             loses its oldest frames.
 
     Attributes:
@@ -78,14 +78,14 @@ class Outbox:
         on_overflow: Called when it is closed because the client reads no answers.
     """
 
-    def __init__(self, most_bytes: int = 64 << 20) -> None:
+    def __init__(self, max_bytes: int = 64 << 20) -> None:
         self.dropped: dict[Hashable, int] = defaultdict(int)
         self.sent = 0
         self.overflowed = False
         self.direct: Callable[[Frame], bool] | None = None
         self.on_drop: Callable[[Hashable], object] = ignore
         self.on_overflow: Callable[[], object] = ignore
-        self._most_bytes = most_bytes
+        self._max_bytes = max_bytes
         self._bytes = 0
         self._answers: deque[Frame] = deque()
         self._answer_bytes = 0
@@ -123,7 +123,7 @@ class Outbox:
             self._drop(key)
             if depth > 1:
                 self.on_drop(key)
-        while self._bytes > self._most_bytes:
+        while self._bytes > self._max_bytes:
             largest = max(self._key_bytes, key=self._key_bytes.__getitem__)
             self._drop(largest)
             self.on_drop(largest)
@@ -138,7 +138,7 @@ class Outbox:
             return
         self._answers.append(frame)
         self._answer_bytes += len(frame)
-        if len(self._answers) > MAX_ANSWERS or self._answer_bytes > self._most_bytes:
+        if len(self._answers) > MAX_ANSWERS or self._answer_bytes > self._max_bytes:
             self.overflowed = True
             self.on_overflow()
             self.close()

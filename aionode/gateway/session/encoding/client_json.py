@@ -25,14 +25,14 @@ LARGE_BYTES: Final = 64 << 10
 """The limit for a message in CDR, which is decoded faster."""
 
 
-def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame") -> Any:
+def decoded(text: str | bytes | memoryview, max_parts: int, what: str = "frame") -> Any:
     """Return the value of JSON.
 
     Python's json module also accepts NaN and Infinity, which JSON does not have.
 
     Args:
         text: The JSON.
-        most_parts: The most objects and lists that it may contain: an empty object of two
+        max_parts: The most objects and lists that it may contain: an empty object of two
             characters may become a message of some kilobytes.
         what: The name of the data, for errors.
 
@@ -40,28 +40,30 @@ def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame"
         MessageError: it is not JSON, is nested too deeply, or has too many parts.
     """
     octets = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
-    check_parts(octets, most_parts, what)
+    check_parts(octets, max_parts, what)
     try:
         return msgspec.json.decode(octets)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
         return with_infinities(octets, what, error)
 
 
-def check_parts(octets: bytes, most: int, what: str = "frame") -> None:
+def check_parts(octets: bytes, max_parts: int, what: str = "frame") -> None:
     """Refuse JSON with too many parts.
 
     Raises:
         MessageError: there are too many.
     """
     limit = "by frame_parts in the gateway's limits"
-    has_many = octets.count(b",") > VALUES_PER_PART * most
-    if not has_many and brackets(octets) <= most:
+    has_many = octets.count(b",") > VALUES_PER_PART * max_parts
+    if not has_many and brackets(octets) <= max_parts:
         return
     plain = without_texts(octets)
-    if (count := brackets(plain)) > most:
-        raise MessageError(what, f"{count} objects and lists, at most {most} are allowed {limit}")
-    if (count := plain.count(b",")) > VALUES_PER_PART * most:
-        problem = f"{count} values, at most {VALUES_PER_PART * most} are allowed {limit}"
+    if (count := brackets(plain)) > max_parts:
+        raise MessageError(
+            what, f"{count} objects and lists, at most {max_parts} are allowed {limit}"
+        )
+    if (count := plain.count(b",")) > VALUES_PER_PART * max_parts:
+        problem = f"{count} values, at most {VALUES_PER_PART * max_parts} are allowed {limit}"
         raise MessageError(what, problem)
 
 
