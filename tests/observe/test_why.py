@@ -429,6 +429,26 @@ async def test_an_action_has_causes_both_ways(way: str) -> None:
     assert names(cancelled)[2][:2] == ["_on_cancel", "request /fib/_action/cancel_goal"]
 
 
+async def test_a_result_does_not_lead_back_to_the_goal_before() -> None:
+    """Although the client handles all of them in one place."""
+    async with robot() as node, with_action(node, node) as client:
+        out = node.create_publisher(Int32, "out", 10)
+
+        async def send_and_tell() -> None:
+            goal = await client.send_goal(Fibonacci.Goal(order=1))
+            await goal.result()
+            out.publish(Int32())
+
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(send_and_tell())
+        first = await chain_of(node, "out")
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(send_and_tell())
+        second = await chain_of(node, "out")
+
+    assert second == first
+
+
 @pytest.mark.parametrize("way", ["link", "zenoh"])
 async def test_a_chain_goes_through_processes(way: str) -> None:
     """Each tells what it knows; the times are by the clock of each."""

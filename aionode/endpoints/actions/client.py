@@ -520,6 +520,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         asking = goal._asking
         if self.destroyed:
             return None
+        CAUSES.set(())  # those of the goal before, as the calls for all goals share one context
         if asking is None:
             if not self._get_result.service_is_ready():
                 return self._ask_later(goal)
