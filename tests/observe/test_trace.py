@@ -54,7 +54,10 @@ async def traced(way: str) -> Any:
         listener.create_subscription(Int32, "numbers", on_number)
         await publisher.wait_for_subscribers()
         talker.create_timer(0.01, on_tick)
-        return await record_trace(talker, 0.3)
+        trace = await record_trace(talker, 0.3)
+        while trace.callbacks + trace.lost < 20:  # the machine is busy
+            trace = await record_trace(talker, 1.0)
+        return trace
 
 
 @pytest.mark.parametrize("way", ["local", "link"])
