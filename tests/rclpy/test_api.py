@@ -27,6 +27,7 @@ from rclpy._impl.errors import RCLError
 from rclpy._impl.topics import SubscriptionHandle
 from rclpy._impl.typesupport import service_support
 from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.experimental.asyncio import AsyncNode
@@ -37,6 +38,7 @@ from rclpy.serialization import serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.task import Future
+from rclpy.waitable import Waitable
 from rosidl_generator_py import action_class, message_class, service_class
 from tests.support.fork_server import start
 from tests.support.peers import isolated_environment
@@ -469,6 +471,103 @@ def test_an_executor_does_not_look_where_nothing_can_be_ready(
     executor.spin_once(timeout_sec=0.05)
 
     assert looks_ns[1] - began_ns > 0.04 * 1e9
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.timeout(20)
+def test_a_message_that_arrived_while_its_group_was_spinning_is_found_after_that() -> None:
+    """The end of the callback that has spun makes it callable, and wakes nobody."""
+    node = rclpy.create_node("nested")
+    got: list[str] = []
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    second = node.create_publisher(String, "second", 10)
+
+    def spin_in_callback(_: object) -> None:
+        second.publish(String(data="hello"))
+        executor.spin_once(timeout_sec=0.01)
+
+    node.create_subscription(String, "first", spin_in_callback, 10)
+    node.create_subscription(String, "second", lambda msg: got.append(msg.data), 10)
+    node.create_publisher(String, "first", 10).publish(String())
+    executor.spin_once(timeout_sec=60.0)
+
+    executor.spin_once(timeout_sec=60.0)
+
+    assert got == ["hello"]
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.timeout(20)
+def test_a_waitable_that_a_callback_makes_ready_is_executed() -> None:
+    """It may have no handle that wakes the executor."""
+
+    class Told(Waitable[None]):
+        told = executed = False
+
+        def is_ready(self, _: object) -> bool:
+            return self.told
+
+        def take_data(self) -> None:
+            self.told = False
+
+        async def execute(self, _: object) -> None:
+            self.executed = True
+
+        def add_to_wait_set(self, _: object) -> None:
+            pass
+
+        def __enter__(self) -> None:
+            pass
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+    node = rclpy.create_node("telling")
+    waitable = Told(ReentrantCallbackGroup())
+    node.add_waitable(waitable)
+    node.create_subscription(String, "tell", lambda _: setattr(waitable, "told", True), 10)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    node.create_publisher(String, "tell", 10).publish(String())
+    executor.spin_once(timeout_sec=60.0)
+
+    executor.spin_once(timeout_sec=60.0)
+
+    assert waitable.executed
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.timeout(20)
+def test_a_message_is_found_after_a_signal_handler_has_raised_in_a_spin() -> None:
+    """Here just after the executor has taken the wake-up."""
+    node = rclpy.create_node("interrupted")
+    got: list[str] = []
+    node.create_subscription(String, "interrupted", lambda msg: got.append(msg.data), 10)
+    publisher = node.create_publisher(String, "interrupted", 10)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    executor.spin_once(timeout_sec=0.01)
+    publisher.publish(String(data="hello"))
+
+    def interrupt(frame: FrameType, event: str, called: object) -> None:
+        is_here = frame.f_code.co_filename == executors.__file__
+        if event == "c_return" and is_here and getattr(called, "__name__", "") == "acquire":
+            raise KeyboardInterrupt
+
+    sys.setprofile(interrupt)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            executor.spin_once(timeout_sec=60.0)
+    finally:
+        sys.setprofile(None)
+
+    executor.spin_once(timeout_sec=60.0)
+
+    assert got == ["hello"]
     executor.shutdown()
 
 

@@ -121,6 +121,7 @@ class Executor:
         # ready then, and perhaps has more, or was not called. If not, there is no look before a
         # wait.
         self._Executor__some_left = True
+        self._Executor__is_calling = False  # whether a callback is running, which may spin itself
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
@@ -371,11 +372,20 @@ class Executor:
         context = self._Executor__context_handle
         yielded = False
         while not yielded:
+            # True until it has looked: a signal handler that raises may end this at any place.
+            some_left, self._Executor__some_left = self._Executor__some_left, True
             if self._Executor__wakeup.take(False):  # whatever woke it is checked now
-                self._Executor__some_left = True
+                some_left = True
             if self._is_shutdown or context.is_shut_down or condition():
                 self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
+            # Whether something may be ready without having woken it: a waitable has rules of its
+            # own, and a callback that spins blocks its group, whose end wakes nobody.
+            looks = (
+                nodes is not None
+                or self._Executor__is_calling
+                or any(node._Node__waitables for node in used)
+            )
             if self._tasks:
                 for work in self._Executor__unfinished(used):
                     yielded = True
@@ -383,15 +393,14 @@ class Executor:
             left_ns = None if ends_ns is None else ends_ns - steady_ns()
             may_wait = not yielded and (left_ns is None or left_ns > 0)
             ready: list[Ready] = []
-            if self._Executor__some_left or nodes is not None or not may_wait:
+            if some_left or looks or not may_wait:
                 ready = find_ready(used, self.can_execute, context)
             if may_wait and not ready:
-                self._Executor__some_left = True
                 self._Executor__wait(used, left_ns)
                 if self._is_shutdown or context.is_shut_down:
                     self._Executor__raise_if_over()
                 ready = find_ready(used, self.can_execute, context)
-            self._Executor__some_left = bool(ready) or nodes is not None
+            self._Executor__some_left = looks or bool(ready)
             if len(ready) > 1:
                 ready = self._Executor__in_turn(ready)
             # Before the calls, which may take longer than the limit.
@@ -402,7 +411,7 @@ class Executor:
                     yielded = True
                     yield call
             if len(ready) == 1:
-                self._Executor__some_left = may_be_ready(*ready) or nodes is not None
+                self._Executor__some_left = looks or may_be_ready(*ready)
             if over:
                 raise TimeoutException
 
@@ -517,12 +526,14 @@ class Executor:
         if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
             return None
         coroutine = None
+        outer, self._Executor__is_calling = self._Executor__is_calling, True
         try:
             call = take(self, entity)
             result = None if call is None else call()
             if result is not None and call is not None and is_awaited(call, result):
                 coroutine = result
         finally:
+            self._Executor__is_calling = outer
             if coroutine is None and group is not None:
                 group.ending_execution(entity)
         if coroutine is None:
@@ -636,8 +647,8 @@ class MultiThreadedExecutor(Executor):
         if timeout_sec is not None and timeout_sec >= 0:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         while sum(task._scheduled for task in self._futures) >= self._Executor__num_threads:
+            self._Executor__some_left = True  # first: a signal handler may raise in between
             self._Executor__wakeup.take(False)  # whatever woke it is checked now
-            self._Executor__some_left = True
             self._Executor__raise_if_over(condition)
             self._cb_iter = None  # more may be ready when a thread is free
             left_ns = None if ends_ns is None else ends_ns - steady_ns()
