@@ -49,10 +49,12 @@ class Handlers:
 
     Attributes:
         harmless: Whether all of them are; None after a change, until somebody has looked.
+        changes: How often one was installed.
         thread: The main thread, in which Python calls them.
     """
 
     harmless: bool | None = None
+    changes = 0
     thread = main_thread().ident
 
 
@@ -64,6 +66,7 @@ def note_change(install: Callable[..., Any]) -> Callable[..., Any]:
             Handlers.harmless = False  # for a handler that interrupts this
             return install(*args)
         finally:
+            Handlers.changes += 1
             Handlers.harmless = None
 
     return signal
@@ -121,10 +124,12 @@ def end() -> None:
 
 def handlers_are_harmless() -> bool:
     """Look whether all installed Python handlers are ones that call `postpone`; note the answer."""
+    changes = Handlers.changes
     installed = map(_signal.getsignal, NUMBERS)  # `signal.getsignal` makes enums: ten times as long
     harmless = all(handler in own_handlers for handler in installed if callable(handler))
-    Handlers.harmless = harmless
-    return harmless
+    if changes == Handlers.changes:  # if not, a handler has interrupted this, and replaced some
+        Handlers.harmless = harmless
+    return bool(Handlers.harmless)
 
 
 def note_main_thread() -> None:
