@@ -302,7 +302,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         Args:
             goal: An instance of ``action_type.Goal``; it may be changed once the call has started.
             feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
-                is in its field ``feedback``. Sync or async. Without it, iterate over the handle.
+                is in its field ``feedback``. Sync or async. The first call may come before this
+                returns. Without it, iterate over the handle.
             goal_uuid: The id as unique_identifier_msgs/msg/UUID; by default a random one.
 
         Raises:
