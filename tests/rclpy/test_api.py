@@ -409,10 +409,10 @@ def test_a_wake_up_from_before_a_round_begins_no_second_one() -> None:
     """The done callback of a future wakes the executor that has just called it."""
 
     class Counting(SingleThreadedExecutor):
-        rounds = 0
+        looks = 0
 
         def get_nodes(self) -> list[Any]:
-            self.rounds += 1
+            self.looks += 1
             return super().get_nodes()
 
     executor = Counting()
@@ -420,7 +420,7 @@ def test_a_wake_up_from_before_a_round_begins_no_second_one() -> None:
 
     executor.spin_once(timeout_sec=0.01)
 
-    assert executor.rounds == 1
+    assert executor.looks == 2  # before and after its wait
     executor.shutdown()
 
 
@@ -496,6 +496,33 @@ def test_a_message_that_arrived_while_its_group_was_spinning_is_found_after_that
     executor.spin_once(timeout_sec=60.0)
 
     assert got == ["hello"]
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.timeout(20)
+def test_what_is_ready_in_a_node_that_is_added_during_a_wait_is_found() -> None:
+    """Only adding the node wakes the executor, which looks for what is ready in it, too."""
+    got: list[str] = []
+    late = rclpy.create_node("late")
+    guard = late.create_guard_condition(lambda: got.append("called"))
+    guard.trigger()
+
+    class Executor(SingleThreadedExecutor):
+        """Adds the node just before it waits, when it asks whether to wait for a timer."""
+
+        def can_execute(self, entity: Any) -> bool:
+            self.add_node(late)
+            return super().can_execute(entity)
+
+    node = rclpy.create_node("early")
+    node.create_timer(3600.0, lambda: None)
+    executor = Executor()
+    executor.add_node(node)
+
+    executor.spin_once(timeout_sec=60.0)
+
+    assert got == ["called"]
     executor.shutdown()
 
 

@@ -399,6 +399,8 @@ class Executor:
                 self._Executor__wait(used, left_ns)
                 if self._is_shutdown or context.is_shut_down:
                     self._Executor__raise_if_over()
+                if nodes is None:
+                    used = self.get_nodes()  # one that was added has woken it
                 ready = find_ready(used, self.can_execute, context)
             self._Executor__some_left = looks or bool(ready)
             if len(ready) > 1:
