@@ -540,6 +540,8 @@ class Connection:
 
     def _release_soon(self, number: int) -> None:
         """Release a buffer of the other process; called on any thread, within any other call."""
+        # A buffer that the garbage collector frees just before the loop sleeps is released once it
+        # wakes up again, at the latest after a keep-alive; until then it is only kept for longer.
         call_soon = self._loop.call_soon_threadsafe
         with suppress(RuntimeError):  # in another thread
             if running_loop() is self._loop:
