@@ -293,8 +293,15 @@ class Readers:
             os.eventfd_read(self._event)
 
     def _look(self) -> None:
-        """Handle readable descriptors, in the loop's thread."""
-        self._call(self._epoll.poll(0))
+        """Handle readable descriptors, in the loop's thread, unless another thread waits for them.
+
+        No other one begins meanwhile, since this might take the event that is to rouse it.
+        """
+        if self._waiting.acquire(False):
+            try:
+                self._call(self._epoll.poll(0))
+            finally:
+                self._waiting.release()
 
     def _call(self, readable: list[tuple[int, int]]) -> None:
         for fd, _ in readable:

@@ -29,7 +29,6 @@ __all__ = [
     "await_or_execute",
     "find_ready",
     "is_awaited",
-    "may_be_ready",
     "wait_set_of",
 ]
 
@@ -102,12 +101,6 @@ def arrived(
     if not found:
         arrivals.seen = last
     return ready
-
-
-def may_be_ready(called: Ready) -> bool:
-    """Return whether what was called may be ready again already."""
-    entity, _, take = called
-    return take is take_waitable or bool(entity._handle.ready())
 
 
 def is_ready(waitable: Any, context: Any) -> bool:

@@ -24,7 +24,6 @@ from rclpy._taking import (
     await_or_execute,
     find_ready,
     is_awaited,
-    may_be_ready,
     wait_set_of,
 )
 from rclpy.task import Future, Task
@@ -117,11 +116,6 @@ class Executor:
         # Used by the spinning thread; only one thread at a time may spin.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
-        # Whether something may be ready: it has woken the executor since the last look, or it was
-        # ready then, and perhaps has more, or was not called. If not, there is no look before a
-        # wait.
-        self._Executor__some_left = True
-        self._Executor__is_calling = False  # whether a callback is running, which may spin itself
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
@@ -372,37 +366,22 @@ class Executor:
         context = self._Executor__context_handle
         yielded = False
         while not yielded:
-            # True until it has looked: a signal handler that raises may end this at any place.
-            some_left, self._Executor__some_left = self._Executor__some_left, True
-            if self._Executor__wakeup.take(False):  # whatever woke it is checked now
-                some_left = True
+            self._Executor__wakeup.take(False)  # whatever woke it is checked now
             if self._is_shutdown or context.is_shut_down or condition():
                 self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
-            # Whether something may be ready without having woken it: a waitable has rules of its
-            # own, and a callback that spins blocks its group, whose end wakes nobody.
-            looks = (
-                nodes is not None
-                or self._Executor__is_calling
-                or any(node._Node__waitables for node in used)
-            )
             if self._tasks:
                 for work in self._Executor__unfinished(used):
                     yielded = True
                     yield work
-            left_ns = None if ends_ns is None else ends_ns - steady_ns()
-            may_wait = not yielded and (left_ns is None or left_ns > 0)
-            ready: list[Ready] = []
-            if some_left or looks or not may_wait:
-                ready = find_ready(used, self.can_execute, context)
-            if may_wait and not ready:
-                self._Executor__wait(used, left_ns)
-                if self._is_shutdown or context.is_shut_down:
-                    self._Executor__raise_if_over()
-                if nodes is None:
-                    used = self.get_nodes()  # one that was added has woken it
-                ready = find_ready(used, self.can_execute, context)
-            self._Executor__some_left = looks or bool(ready)
+            ready = find_ready(used, self.can_execute, context)
+            if not ready and not yielded:
+                left_ns = None if ends_ns is None else ends_ns - steady_ns()
+                if left_ns is None or left_ns > 0:
+                    self._Executor__wait(used, left_ns)
+                    if self._is_shutdown or context.is_shut_down:
+                        self._Executor__raise_if_over()
+                    ready = find_ready(used, self.can_execute, context)
             if len(ready) > 1:
                 ready = self._Executor__in_turn(ready)
             # Before the calls, which may take longer than the limit.
@@ -412,8 +391,6 @@ class Executor:
                 if call is ready[0] or self.can_execute(call[0]):
                     yielded = True
                     yield call
-            if len(ready) == 1:
-                self._Executor__some_left = looks or may_be_ready(*ready)
             if over:
                 raise TimeoutException
 
@@ -528,14 +505,12 @@ class Executor:
         if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
             return None
         coroutine = None
-        outer, self._Executor__is_calling = self._Executor__is_calling, True
         try:
             call = take(self, entity)
             result = None if call is None else call()
             if result is not None and call is not None and is_awaited(call, result):
                 coroutine = result
         finally:
-            self._Executor__is_calling = outer
             if coroutine is None and group is not None:
                 group.ending_execution(entity)
         if coroutine is None:
@@ -649,7 +624,6 @@ class MultiThreadedExecutor(Executor):
         if timeout_sec is not None and timeout_sec >= 0:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         while sum(task._scheduled for task in self._futures) >= self._Executor__num_threads:
-            self._Executor__some_left = True  # first: a signal handler may raise in between
             self._Executor__wakeup.take(False)  # whatever woke it is checked now
             self._Executor__raise_if_over(condition)
             self._cb_iter = None  # more may be ready when a thread is free
