@@ -520,9 +520,9 @@ def test_a_finalizer_may_hand_work_to_a_loop_that_is_held(way: str) -> None:
 
     with running_loop() as loop:
         hold = Hold(loop, way)
-        Garbage(hold.interrupt)
 
         with hold:
+            Garbage(hold.interrupt)  # here, as it may be collected at any time from now on
             gc.collect()
             assert hold.answers
             assert not hold.done.is_set()
