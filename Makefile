@@ -1,7 +1,7 @@
 # aionode's commands. The first one makes .venv and installs what it needs; nothing else is touched.
 #
 #   make demo      two nodes talk: python -m aionode.examples.pubsub
-#   make test      the tests, in WORKERS processes: two for each processor, and two more
+#   make test      the tests, in WORKERS processes: two for each processor, and four more
 #   make check     style, types, layers and structure, the documentation and its code
 #   make docs      the documentation as pages, in site/
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
