@@ -105,23 +105,3 @@ def test_a_handler_that_is_installed_later_is_seen(monkeypatch: pytest.MonkeyPat
         assert not uninterrupted.begin()
     finally:
         signal.signal(signal.SIGUSR1, before)
-
-
-def test_a_handler_that_is_installed_during_the_look_at_handlers_is_seen(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """By a handler that interrupts the look, and replaces itself."""
-
-    class Ours(set[Any]):
-        def __contains__(self, _: object) -> bool:
-            signal.signal(signal.SIGUSR1, lambda *_: None)
-            return True
-
-    before = signal.getsignal(signal.SIGUSR1)
-    monkeypatch.setattr(uninterrupted, "own_handlers", Ours())
-    monkeypatch.setattr(uninterrupted.Handlers, "harmless", None)
-    try:
-        assert not uninterrupted.begin()
-        assert uninterrupted.Handlers.harmless is None
-    finally:
-        signal.signal(signal.SIGUSR1, before)

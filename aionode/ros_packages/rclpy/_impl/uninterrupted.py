@@ -12,9 +12,11 @@ message to the context's thread, and one that waits for an answer gets an error.
 
 from __future__ import annotations
 
-import _signal  # type: ignore[import-not-found]  # it has no stub
 import os
 import signal
+
+# `signal.getsignal` creates an enum for each answer, which takes ten times as long.
+from _signal import getsignal  # type: ignore[import-not-found]  # it has no stub
 from threading import current_thread, get_ident, main_thread
 from typing import TYPE_CHECKING, Any
 
@@ -45,36 +47,15 @@ postponed: list[Callable[[], object]] = []
 
 
 class Handlers:
-    """What is known of the installed handlers.
+    """The installed handlers at the last check, whether all of them are harmless, and their thread.
 
     Attributes:
-        harmless: Whether all of them are; None after a change, until somebody has looked.
-        changes: How often one was installed.
         thread: The main thread, in which Python calls them.
     """
 
-    harmless: bool | None = None
-    changes = 0
+    seen: list[Any] | None = None
+    harmless = False
     thread = main_thread().ident
-
-
-def note_change(install: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that installs a handler like `install`, and notes that."""
-
-    def signal(*args: Any) -> Any:
-        try:
-            Handlers.harmless = False  # for a handler that interrupts this
-            return install(*args)
-        finally:
-            Handlers.changes += 1
-            Handlers.harmless = None
-
-    return signal
-
-
-# `signal.signal`, and with it everything that installs a handler, calls this one. Looking at all
-# handlers before each piece of work would take a twentieth of a message's time.
-_signal.signal = note_change(_signal.signal)
 
 
 def begin(rouse: Callable[[], None] | None = None) -> bool:
@@ -95,10 +76,7 @@ def begin(rouse: Callable[[], None] | None = None) -> bool:
         # Before the check: from here on rclpy's handler postpones itself, and with it the program's
         # code that it calls and that might install another handler.
         working[ident] = looks
-        harmless = Handlers.harmless
-        alone = bool(
-            harmless or ident != Handlers.thread or (harmless is None and handlers_are_harmless())
-        )
+        alone = ident != Handlers.thread or handlers_are_harmless()
     finally:
         # A handler of the program that interrupts the check may wait: the work does not begin then.
         if alone:
@@ -123,13 +101,14 @@ def end() -> None:
 
 
 def handlers_are_harmless() -> bool:
-    """Look whether all installed Python handlers are ones that call `postpone`; note the answer."""
-    changes = Handlers.changes
-    installed = map(_signal.getsignal, NUMBERS)  # `signal.getsignal` makes enums: ten times as long
-    harmless = all(handler in own_handlers for handler in installed if callable(handler))
-    if changes == Handlers.changes:  # if not, a handler has interrupted this, and replaced some
-        Handlers.harmless = harmless
-    return bool(Handlers.harmless)
+    """Return whether all installed Python handlers are ones that call `postpone`."""
+    installed = [*map(getsignal, NUMBERS)]
+    if installed != Handlers.seen:
+        Handlers.harmless = all(
+            handler in own_handlers for handler in installed if callable(handler)
+        )
+        Handlers.seen = installed
+    return Handlers.harmless
 
 
 def note_main_thread() -> None:
