@@ -77,9 +77,9 @@ OURS, DEFAULT, EVENTS = "aionode run", "rclpy, default executor", "rclpy, events
 PROCESSOR = ", processor"
 AIMS = (
     ("start", DEFAULT, 1.0),
-    ("in process", DEFAULT, 0.5),
+    ("in process", DEFAULT, 0.25),
     ("in process" + PROCESSOR, EVENTS, 0.7),
-    ("two processes", EVENTS, 0.8),
+    ("two processes", EVENTS, 0.5),
     ("two processes" + PROCESSOR, EVENTS, 0.7),
 )
 

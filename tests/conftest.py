@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import compileall
 import functools
 import gc
-import importlib.util
 import inspect
 import os
 import signal
-import subprocess
 import sys
 from itertools import takewhile
 from pathlib import Path
@@ -20,6 +19,7 @@ import uvloop
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
+import aionode
 from aionode import rclpy
 from aionode.node import Node
 from tests.bytecode import share_bytecode
@@ -155,29 +155,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         config.option.loadscopereorder = False
         if config.args == config.getini("testpaths"):
             config.pluginmanager.register(Shares())
-    if not is_compiled(Path(__file__).with_name("test_exports.py")):
-        compile_once(config.args)
-
-
-def is_compiled(test: Path) -> bool:
-    """Return whether this Python has compiled a file of tests, as pytest does it."""
-    folder = Path(importlib.util.cache_from_source(str(test))).parent
-    return any(folder.glob(f"{test.stem}.{sys.implementation.cache_tag}-pytest-*.pyc"))
-
-
-def compile_once(arguments: list[str]) -> None:
-    """Collect the tests in one process, so that not every worker compiles all imported modules.
-
-    In a fresh clone or environment, this takes more than ten seconds of processor time.
-    """
-    subprocess.run(
-        [sys.executable, "-m", "pytest", "--collect-only", "-qq", *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env={name: value for name, value in os.environ.items() if name != "PYTEST_ADDOPTS"},
-        check=False,  # the workers report what cannot be collected
-    )
+    # In a fresh clone or environment, each worker would compile the modules for itself.
+    compileall.compile_dir(Path(aionode.__file__).parent, quiet=2)
 
 
 def pytest_configure(config: pytest.Config) -> None:
