@@ -60,7 +60,6 @@ def all_attacks() -> list[Attack]:
             "other user",
             "pretend_sessions",
             pair(),
-            longer_s=2.0,
             commands=(("node", "list"),),
         ),
         Attack(

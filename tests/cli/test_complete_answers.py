@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from aionode.cli._support.session import wait_until_known
+from aionode.engine.transport.zenoh.session.local_sessions import announce, reserve_port
 from aionode.engine.wire._liveliness import endpoint_token
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.node import Node
@@ -26,8 +27,8 @@ TOPICS = 3000
 SILENT = """
 import socket, sys, time
 from aionode.engine.transport.zenoh.session.local_sessions import announce
-server = socket.create_server(("127.0.0.1", 0))
-presence = announce(int(sys.argv[1]), server.getsockname()[1])
+servers = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]
+presence = [announce(int(sys.argv[1]), each.getsockname()[1]) for each in servers]
 print("there", flush=True)
 time.sleep(600)
 """
@@ -74,13 +75,24 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
     assert "this may be incomplete" in done.stderr
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
+def test_listed_sessions_that_do_not_listen_are_none(env: dict[str, str]) -> None:
+    """Any user can list some, and no command waits for them."""
+    group = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
+    reserved = reserve_port("127.0.0.1")
+    with closing(reserved), closing(announce(group, reserved.getsockname()[1])):
+        done = run(["-m", "aionode", "topic", "list", "-c"], env=env, timeout=60)
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0\n", "")
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
 @pytest.mark.parametrize("is_stopped", [True, False])
 def test_each_command_names_a_process_that_does_not_answer(
     env: dict[str, str], *, is_stopped: bool
 ) -> None:
-    """It listens on its own port, like every process after the third."""
+    """It listens on ports of its own, like every process after the third, and is named once."""
     group = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
     with subprocess.Popen(
         [sys.executable, "-c", SILENT, str(group)], stdout=subprocess.PIPE, text=True

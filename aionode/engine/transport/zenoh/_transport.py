@@ -38,7 +38,7 @@ from aionode.engine.transport.zenoh.endpoints.services import ZenohRequester, Ze
 from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
 from aionode.engine.transport.zenoh.session.connect_slots import connecting
 from aionode.engine.transport.zenoh.session.local_router import LocalRouter
-from aionode.engine.transport.zenoh.session.local_sessions import listed, processes
+from aionode.engine.transport.zenoh.session.local_sessions import listed, listening, processes
 from aionode.engine.transport.zenoh.session.session import (
     close_session,
     open_session,
@@ -73,6 +73,9 @@ ASK_AGAIN_S = 0.2
 
 TOKEN_BYTES = 100
 """Approximate minimum size of an endpoint's announcement; keep-alives are a few bytes."""
+
+MAX_PORTS = 3
+"""Number of ports to name at which unknown processes do not answer."""
 
 NAMED_NS = 10_000_000_000
 """How long to wait for a peer named by others while more tokens arrive, in nanoseconds."""
@@ -210,14 +213,16 @@ class ZenohTransport(Transport):
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the tokens of all reachable peers are in the graph.
 
-        Processes of this machine that are stopped are not waited for: they do not answer.
+        It does not wait for processes of this machine that cannot answer: they are stopped, or have
+        listed a session that does not listen.
         """
         session, graph = self._state.session, self._state.graph
         if session is None or graph is None:
             return False
+        absent: AbstractSet[int] = frozenset()
         if not self._is_connected():  # on a busy machine that takes longer than `open` waits
-            stopped = await run_in_own_thread(self._stopped_ports)
-            is_enough = partial(self._is_connected, stopped)
+            absent, stopped = await run_in_own_thread(self._unreachable_ports)
+            is_enough = partial(self._is_connected, absent | stopped)
             await self._state.connections.wait_longer(is_enough, quiet_s)
             self._ask(session)
         if not await self._has_answers(session, quiet_s):
@@ -226,7 +231,7 @@ class ZenohTransport(Transport):
         # sees reveals them.
         missing = await self._missing_nodes(session, quiet_s)
         if not missing:
-            return missing is not None and self._is_connected()
+            return missing is not None and self._is_connected(absent)
         quiet_ns = int(quiet_s * 1e9)
         ends_ns = perf_ns() + NAMED_NS
         while not all(map(is_of_stopped_process, missing)):
@@ -243,7 +248,7 @@ class ZenohTransport(Transport):
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
         has_answers = await self._has_answers(session, quiet_s)
-        return has_answers and not missing and self._is_connected()
+        return has_answers and not missing and self._is_connected(absent)
 
     def _is_connected(self, besides: AbstractSet[int] = frozenset()) -> bool:
         """Return whether all peers that accept connections have been connected.
@@ -255,10 +260,11 @@ class ZenohTransport(Transport):
         count = len(self._state.connections.kinds) + len(silent & besides)
         return count >= self._expected and silent <= besides
 
-    def _stopped_ports(self) -> set[int]:
-        """Return the ports of this machine's sessions whose processes are stopped."""
-        found = processes(self.network.meeting_ports[0])
-        return {port for port, process in found.items() if process.is_stopped}
+    def _unreachable_ports(self) -> tuple[set[int], set[int]]:
+        """Return the ports at which no session listens, and those of stopped processes."""
+        found, listeners = processes(self.network.meeting_ports[0]), listening()
+        absent = set() if listeners is None else self._dialled - listeners
+        return absent, {port for port, process in found.items() if process.is_stopped}
 
     def _silent_ports(self) -> set[int]:
         """Return the ports of those sessions of this machine that were dialled in vain.
@@ -284,19 +290,27 @@ class ZenohTransport(Transport):
 
     def silent_processes(self) -> list[str]:
         """Describe the processes on this machine that do not answer, as far as the system knows."""
-        unconnected, found = self._silent_ports(), processes(self.network.meeting_ports[0])
-        silent = []
-        for port in sorted(self._listed_others()):
+        found, listeners = processes(self.network.meeting_ports[0]), listening()
+        unconnected, ports = self._silent_ports(), self._listed_others()
+        if listeners is not None:
+            ports &= listeners
+        silent: dict[str, None] = {}  # once for each process, which may have many sessions
+        unnamed = []
+        for port in sorted(ports):
             process = found.get(port)
             if process is None:
                 if port in unconnected:
-                    silent.append(f"a process that listens at port {port} does not answer")
+                    unnamed.append(str(port))
             elif process.is_stopped or port in unconnected:
                 why = "does not answer"
                 if process.is_stopped:
                     why = f"is stopped (kill -CONT {process.pid})"
-                silent.append(f"process {process.pid} ({process.command}) {why}")
-        return silent
+                silent[f"process {process.pid} ({process.command}) {why}"] = None
+        if unnamed:
+            more = f" and {len(unnamed) - MAX_PORTS} others" if len(unnamed) > MAX_PORTS else ""
+            where = f"{', '.join(unnamed[:MAX_PORTS])}{more}"
+            silent[f"what listens at port {where} does not answer"] = None
+        return list(silent)
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
         """Return the nodes that a gossip source sees but the graph lacks; None if unanswered."""

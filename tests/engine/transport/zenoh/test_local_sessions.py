@@ -18,6 +18,7 @@ from aionode.engine.transport.zenoh.session.local_sessions import (
     groups,
     holder_of,
     listed,
+    listening,
     processes,
     reserve_port,
 )
@@ -50,6 +51,17 @@ def test_a_session_is_listed_with_its_process(group: int) -> None:
     assert found[4711].pid == os.getpid()
     assert found[4711].command
     assert not found[4711].is_stopped
+
+
+def test_a_port_is_among_those_where_something_listens_until_it_is_closed() -> None:
+    """A session is listed before it listens; one that never does is no session."""
+    with closing(reserve_port("127.0.0.1")) as reserved:
+        port = reserved.getsockname()[1]
+        assert port not in (listening() or ())
+        reserved.listen()
+        assert port in (listening() or ())
+
+    assert port not in (listening() or ())
 
 
 def test_sessions_of_other_groups_are_not_listed(group: int) -> None:

@@ -35,11 +35,17 @@ __all__ = [
     "groups",
     "holder_of",
     "listed",
+    "listening",
     "processes",
     "reserve_port",
 ]
 
 PROCESSES: Final = Path("/proc")
+
+TCP_SOCKETS: Final = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
+
+LISTENS: Final = "0A"
+"""The state of a listening socket in these lists: TCP_LISTEN of Linux's net/tcp_states.h."""
 
 COMMAND: Final = 100
 """Maximum number of characters of a command line to show."""
@@ -74,6 +80,21 @@ def listed(group: int) -> set[int] | None:
         if remote.startswith(start):
             ports.add(int(remote.removeprefix(start), 16))
     return ports
+
+
+def listening() -> set[int] | None:
+    """Return the TCP ports at which processes listen; None if the machine does not list them."""
+    lines: list[str] = []
+    try:
+        for path in filter(Path.exists, TCP_SOCKETS):
+            lines += path.read_text("ascii").splitlines()[1:]
+    except OSError:  # a sandbox may hide it
+        return None
+    columns = (line.split(maxsplit=4) for line in lines)
+    ports = {
+        int(local.rpartition(":")[2], 16) for _, local, _, state, _ in columns if state == LISTENS
+    }
+    return ports or None
 
 
 def groups() -> set[int]:
