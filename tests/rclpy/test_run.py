@@ -50,6 +50,19 @@ Failure: on purpose
 """
 
 
+ENDS_WITHOUT_SHUTDOWN = """\
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
+rclpy.init()
+node = rclpy.create_node("forgetful")
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+node.create_timer(0.01, lambda: None)
+executor.spin_once(timeout_sec=1)
+"""
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A folder with a program, and a module that it imports."""
@@ -89,6 +102,15 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
         "__main__ program.py ['program.py', '--ros-args', 'exit'] std_msgs.msg.String(data='hi')\n"
     )
     assert done.stderr == ""
+
+
+def test_a_program_that_ends_without_shutdown_says_nothing(folder: Path) -> None:
+    """Python ends its objects in any order, the methods to call at shutdown among them."""
+    (folder / "forgetful.py").write_text(ENDS_WITHOUT_SHUTDOWN)
+
+    done = run(folder, "forgetful.py", fresh=True)
+
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_program_runs_at_once_in_the_process_of_the_command(folder: Path) -> None:

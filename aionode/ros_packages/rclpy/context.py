@@ -6,7 +6,7 @@ import sys
 import threading
 import warnings
 import weakref
-from contextlib import suppress
+from functools import partial
 from inspect import ismethod
 from typing import TYPE_CHECKING, Any, Self
 
@@ -15,6 +15,7 @@ from rclpy._impl.context import ContextHandle, living_contexts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from types import MethodType
 
 __all__ = ["Context"]
 
@@ -38,6 +39,23 @@ def configure_logging(handle: ContextHandle) -> None:
             )
 
 
+def weakly(method: MethodType, forget: Callable[[], object]) -> Callable[[], None]:
+    """Return a function that calls a method while its object lives; `forget` is called at its end.
+
+    Not `weakref.WeakMethod`, which prints an AttributeError at the end of a program if it ends
+    before the object. The garbage collector runs `forget` anywhere, so it must not need a lock.
+    """
+    function = method.__func__
+    reference = weakref.ref(method.__self__, lambda _: forget())
+
+    def call() -> None:
+        owner = reference()
+        if owner is not None:
+            function(owner)
+
+    return call
+
+
 class Context:
     """The domain, arguments and end that the nodes of one participant share.
 
@@ -48,7 +66,7 @@ class Context:
     def __init__(self) -> None:
         # Guards the fields below; acquired again by shutdown callbacks, and by nodes that end.
         self._lock = threading.RLock()
-        self._callbacks: list[Callable[[], Any]] = []
+        self._callbacks: dict[object, Callable[[], Any]] = {}
         self._handle: ContextHandle | None = None
         self._nodes: list[weakref.ref[Any]] = []
 
@@ -113,11 +131,9 @@ class Context:
             if node is not None:
                 node.destroy_node()
         handle.shutdown()
-        callbacks, self._callbacks = self._callbacks, []
-        for callback in callbacks:
-            called = callback() if isinstance(callback, weakref.WeakMethod) else callback
-            if called is not None:
-                called()
+        callbacks, self._callbacks = self._callbacks, {}
+        for callback in list(callbacks.values()):
+            callback()
         handle.close()
 
     def shutdown(self) -> None:
@@ -150,15 +166,11 @@ class Context:
         with self._lock:
             if self._handle is not None and not self._handle.ok():
                 callback()
-            elif ismethod(callback):
-                self._callbacks.append(weakref.WeakMethod(callback, self._forget))
             else:
-                self._callbacks.append(callback)
-
-    def _forget(self, callback: Any) -> None:
-        # Called wherever the garbage collector runs; the list may be gone by then.
-        with suppress(ValueError):
-            self._callbacks.remove(callback)
+                key = object()
+                if ismethod(callback):
+                    callback = weakly(callback, partial(self._callbacks.pop, key, None))
+                self._callbacks[key] = callback
 
     def get_domain_id(self) -> int:
         """Return the domain.
