@@ -50,7 +50,9 @@ Failure: on purpose
 """
 
 
-ENDS_WITHOUT_SHUTDOWN = """\
+WITHOUT_SHUTDOWN = """\
+import threading
+
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 
@@ -58,8 +60,8 @@ rclpy.init()
 node = rclpy.create_node("forgetful")
 executor = SingleThreadedExecutor()
 executor.add_node(node)
-node.create_timer(0.01, lambda: None)
-executor.spin_once(timeout_sec=1)
+called = threading.Event()
+node.create_timer(0.01, called.set)
 """
 
 
@@ -104,9 +106,17 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
     assert done.stderr == ""
 
 
-def test_a_program_that_ends_without_shutdown_says_nothing(folder: Path) -> None:
-    """Python ends its objects in any order, the methods to call at shutdown among them."""
-    (folder / "forgetful.py").write_text(ENDS_WITHOUT_SHUTDOWN)
+@pytest.mark.parametrize(
+    "spin",
+    [
+        "executor.spin_once(timeout_sec=10)",
+        "threading.Thread(target=executor.spin, daemon=True).start()",
+        "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()",
+    ],
+)
+def test_a_program_that_ends_without_shutdown_says_nothing(folder: Path, spin: str) -> None:
+    """Python ends its objects in any order; a daemon thread that spins is not told."""
+    (folder / "forgetful.py").write_text(f"{WITHOUT_SHUTDOWN}{spin}\nassert called.wait(10)\n")
 
     done = run(folder, "forgetful.py", fresh=True)
 
