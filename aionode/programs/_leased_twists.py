@@ -26,7 +26,7 @@ class LeasedCommands:
         on_expired: Called when `repeat` was not called in time, and the robot was stopped.
 
     Attributes:
-        is_leased: Whether the robot is being commanded, so that a stop is sent by itself.
+        is_leased: Whether the robot is being commanded, so that a stop follows automatically.
         has_stopped: Whether a stop was sent since the start.
     """
 
@@ -55,7 +55,7 @@ class LeasedCommands:
         self.has_stopped = True
 
     async def drive(self) -> None:
-        """Publish commands until it is cancelled; then, too, a stop is sent."""
+        """Publish commands until cancelled, which also sends a stop."""
         while True:
             await self._due()
             if self._command() is None:

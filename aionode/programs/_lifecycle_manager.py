@@ -21,7 +21,7 @@ __all__ = ["Manager", "main"]
 WATCH_SEC: Final = 0.2
 DIAGNOSTICS_SEC: Final = 1.0
 PATIENCE_SEC: Final = 20.0
-"""How often it logs again for which node it is waiting."""
+"""How often it logs again which node it is waiting for."""
 
 HEALTH: Final = {
     "active": (DiagnosticStatus.OK, "Managed nodes are active"),
@@ -220,7 +220,7 @@ class Manager(Node):
         return True
 
     async def finalize(self) -> bool:
-        """Bring all nodes down and finalize them; one that is gone does not spare the others."""
+        """Bring all nodes down and finalize them, even if one of them is gone."""
         is_down = await self.bring_down()
         return (
             await self.change("shutdown", "Shutting down", reverse=True, goes_on=True) and is_down

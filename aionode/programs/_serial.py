@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["SerialPort"]
 
 CHUNK: Final = 4096
-"""The most bytes that one `read` returns; the kernel keeps about as many of those not yet read."""
+"""The most bytes that one `read` returns; the kernel buffers about as many."""
 
 
 class SerialPort:
@@ -114,7 +114,7 @@ class SerialPort:
             raise OSError(f"{self.path} does not send: {count} of {len(data)} bytes were accepted")
 
     def write_latest(self, data: bytes) -> None:
-        """Write bytes; if the kernel still holds too many earlier ones, in place of those.
+        """Write bytes, replacing earlier ones if the kernel still holds too many.
 
         Raises:
             OSError: The port is gone, or does not take even these.
@@ -128,7 +128,7 @@ class SerialPort:
             self.write(data)
 
     def set_dtr(self, *, is_on: bool) -> None:
-        """Set the line DTR, if the port has one; one that is gone is left alone."""
+        """Set the line DTR, if the port has one; does nothing if the port is gone."""
         if self.device.is_open:
             with suppress(OSError):
                 self.device.dtr = is_on
@@ -138,7 +138,7 @@ class SerialPort:
         return OSError(errno.ENODEV, f"{self.path} is gone; plug it in again")
 
     def close(self) -> None:
-        """Close the port once the kernel has sent what was written; a read ends."""
+        """Close the port once the kernel has sent what was written; this ends a pending read."""
         if self.device.is_open:
             self.loop.remove_reader(self.device.fileno())
             self.device.close()

@@ -10,11 +10,11 @@ __all__ = ["nanoseconds", "stamp_of"]
 
 
 def nanoseconds(stamp: Any) -> int:
-    """Return a stamp or duration in nanoseconds; stamps of others may be before 1970."""
+    """Return a stamp or duration in nanoseconds; stamps from other programs may be before 1970."""
     return int(stamp.sec) * 10**9 + int(stamp.nanosec)
 
 
 def stamp_of(time_ns: int) -> Time:
-    """Return a time as a stamp; it may be before 1970, as an offset may make it in a simulation."""
+    """Return a time as a stamp; in a simulation, an offset may put it before 1970."""
     sec, nanosec = divmod(time_ns, 10**9)
     return Time(sec=sec, nanosec=nanosec)

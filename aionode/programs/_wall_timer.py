@@ -20,7 +20,7 @@ def create_wall_timer(
 ) -> Timer:
     """Create a timer that does not follow simulated time.
 
-    Programs search for topics and devices, repeat commands and show themselves in real time: a
-    simulator that has not started, is paused or is slow must not stop them.
+    Programs search for topics and devices, repeat commands and update what they show in real time:
+    a simulator that has not started, is paused or is slow must not stop them.
     """
     return node.create_timer(period_sec, callback, wall_clock(node), autostart)

@@ -1,1 +1,1 @@
-"""AMCL: where a robot is on a map, by a cloud of particles that laser scans judge."""
+"""AMCL: estimates where a robot is on a map, with a cloud of particles that laser scans weigh."""

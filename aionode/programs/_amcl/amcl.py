@@ -91,7 +91,7 @@ DEFAULTS: Final[dict[str, Any]] = {
 class Amcl(LifecycleNode):
     """Compares scans with a map, and publishes where the robot is and how far its odometry is off.
 
-    The topic `initialpose` or the parameter `set_initial_pose` says where it begins.
+    The topic `initialpose` or the parameter `set_initial_pose` sets where it begins.
     """
 
     def __init__(self, node_name: str = "amcl", **options: Any) -> None:
@@ -257,7 +257,7 @@ class Amcl(LifecycleNode):
     # What it hears
 
     def on_map(self, grid: OccupancyGrid) -> None:
-        """Use a map; it is called in a thread, since its distances take a while."""
+        """Use a map; called in a thread, since computing its distances takes a while."""
         if self.field is not None and self.given("first_map_only"):
             return
         info = grid.info
@@ -279,7 +279,7 @@ class Amcl(LifecycleNode):
         self.field = Field(grid, self.given("laser_likelihood_max_dist"))
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
-        """Begin somewhere else."""
+        """Start again from another pose."""
         self.get_logger().info("initialPoseReceived")
         frame, own = msg.header.frame_id, self.given("global_frame_id")
         at = msg.pose.pose.position
@@ -300,7 +300,7 @@ class Amcl(LifecycleNode):
             self.place(msg)
 
     def place(self, msg: PoseWithCovarianceStamped) -> None:
-        """Spread the particles around a pose, moved by what the robot drove since then."""
+        """Spread the particles around a pose, moved as far as the robot has driven since then."""
         base, odom = self.given("base_frame_id"), self.given("odom_frame_id")
         pose = pose_matrix(msg.pose.pose.position, msg.pose.pose.orientation)
         stamp_ns = stamp_of(msg)
@@ -326,12 +326,12 @@ class Amcl(LifecycleNode):
     def on_set_initial_pose(
         self, request: SetInitialPose.Request, response: SetInitialPose.Response
     ) -> SetInitialPose.Response:
-        """Begin somewhere else."""
+        """Start again from another pose."""
         self.on_initial_pose(request.pose)
         return response
 
     def on_global_localization(self, _request: Any, response: Empty.Response) -> Empty.Response:
-        """Begin with particles all over the map."""
+        """Start again with particles all over the map."""
         if self.field is None or not len(self.field.free):
             self.get_logger().error("There is no map with free cells yet")
             return response
@@ -352,7 +352,7 @@ class Amcl(LifecycleNode):
     async def on_scan(self, scan: LaserScan) -> None:
         """Use a scan, after the odometry of its time, which may be published later."""
         if self.is_active and self.field is not None:
-            with suppress(TransformException):  # looked up, and told, below
+            with suppress(TransformException):  # looked up, and reported, below
                 await self.buffer.wait_for_transform(
                     self.given("odom_frame_id"),
                     scan.header.frame_id,
@@ -393,7 +393,7 @@ class Amcl(LifecycleNode):
             self.broadcast(stamp_ns)
 
     def looked_up(self, target: str, source: str, time_ns: int) -> Array:
-        """Return the matrix from a frame to another; at 0, the latest."""
+        """Return the matrix from one frame to another at a time; 0 means the latest."""
         found = self.buffer.lookup_transform_core(target, source, Time(nanoseconds=time_ns))
         return pose_matrix(found.transform.translation, found.transform.rotation)
 
@@ -432,7 +432,7 @@ class Amcl(LifecycleNode):
         return True
 
     def points_of(self, scan: LaserScan, laser: Array, longest: float) -> Array:
-        """Return where the beams end, in the frame of the robot, also of lasers upside down."""
+        """Return where the beams end, in the frame of the robot, even of a laser upside down."""
         chosen = self.sensor.chosen(len(scan.ranges))
         ranges = np.asarray(scan.ranges[chosen], dtype=float)
         numbers = np.arange(*chosen.indices(len(scan.ranges)))
@@ -463,14 +463,14 @@ class Amcl(LifecycleNode):
         await self.publish_cloud()
 
     async def publish_cloud(self) -> None:
-        """Publish the particles, if somebody looks."""
+        """Publish the particles, if anybody subscribes to them."""
         if not self.cloud_output.get_subscription_count():
             return
         cloud = ParticleCloud()
         cloud.header.frame_id = self.given("global_frame_id")
         cloud.header.stamp = self.get_clock().now().to_msg()
         rows = np.column_stack([self.particles.poses, self.particles.weights])
-        cloud.particles = await run_in_thread(particles_of, rows)  # of thousands, this takes long
+        cloud.particles = await run_in_thread(particles_of, rows)  # slow for thousands of them
         self.cloud_output.publish(cloud)
 
     def broadcast(self, stamp_ns: int) -> None:
@@ -492,7 +492,7 @@ class Amcl(LifecycleNode):
         self.broadcaster.sendTransform(transform)
 
     def warn(self, text: str) -> None:
-        """Warn, not at every scan."""
+        """Warn, but not at every scan."""
         self.get_logger().warning(escaped(text, one_line=True), throttle_duration_sec=TELL_SEC)
 
 

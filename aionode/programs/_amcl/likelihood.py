@@ -16,7 +16,7 @@ __all__ = ["Field", "Sensor"]
 OCCUPIED: Final = 100
 FREE: Final = 0
 MAX_REACH: Final = 200
-"""Over how many cells distances are computed: with 5 cm, ten metres."""
+"""The number of cells up to which distances are computed: ten metres for cells of 5 cm."""
 
 
 class Field:
@@ -24,7 +24,7 @@ class Field:
 
     Args:
         grid: The map, as `OccupancyGrid`.
-        reach: The longest distance, in m; what is farther away counts as that far.
+        reach: The longest distance, in m; anything farther away counts as that far.
     """
 
     def __init__(self, grid: Any, reach: float) -> None:
@@ -85,8 +85,8 @@ class Sensor:
         z_rand: The share of those that end anywhere.
         sigma: The standard deviation of the former, in m.
         max_beams: How many beams of a scan are used.
-        multiplies: Whether the beams' probabilities are multiplied, rather than added by their
-            cubes, which is no probability but tolerates people and furniture.
+        multiplies: Whether the beams' probabilities are multiplied, instead of adding their cubes,
+            which is not a probability but tolerates people and furniture.
     """
 
     z_hit: float

@@ -15,15 +15,15 @@ from aionode.programs._poses import Array, wrapped
 __all__ = ["Estimate", "Particles", "moved_differentially", "moved_sideways"]
 
 BIN: Final = np.array([0.5, 0.5, math.radians(10.0)])
-"""Particles within such a box count as one, for how many are needed and for clusters."""
+"""Particles within a box of this size count as one for clusters, and for how many are needed."""
 
 Bins = npt.NDArray[np.int64]
 
 AROUND: Final = np.array(list(np.ndindex(3, 3, 3)))[14:] - 1
-"""The steps from a bin to half of those that touch it; the others are the same backwards."""
+"""The steps from a bin to half of the bins that touch it; the other half are the reverse steps."""
 
 NO_WAY: Final = 0.01
-"""A shorter way has no direction."""
+"""A shorter move has no direction."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ class Particles:
     """Possible poses of the robot, with weights.
 
     Args:
-        random: The source of chance.
+        random: The random number generator.
         least: The lowest number of particles.
         most: The highest.
         error: How far their distribution may be off.
-        z: The standard score for how sure that is.
+        z: The standard score of the confidence in that limit.
         slow: How fast the long-term average of likelihoods follows; 0 for no recovery.
         fast: The same for the short-term average.
 
@@ -100,11 +100,11 @@ class Particles:
             setattr(self, name, before + rate * (average - before) if before else average)
 
     def resample(self, anywhere: Callable[[int], Array]) -> None:
-        """Draw particles anew, heavier ones more often, and as many as their spread needs.
+        """Draw new particles: heavier ones more often, and as many as their spread needs.
 
         Args:
-            anywhere: Returns poses that know nothing: some are drawn when the particles fit much
-                worse than usual, as the robot may have been carried away.
+            anywhere: Returns poses from all over the map: some are drawn when the particles fit
+                much worse than usual, as the robot may have been carried away.
         """
         lost = 0.0
         if self.slow_average > 0.0:
@@ -119,7 +119,7 @@ class Particles:
             self.slow_average, self.fast_average = averages
 
     def needed(self, poses: Array) -> int:
-        """Return how many of these poses suffice: after how many draws few new bins appear."""
+        """Return how many of these poses suffice: those drawn until few new bins appear."""
         _, first = np.unique(keys_of(bins_of(poses))[0], return_index=True)
         filled = np.zeros(len(poses), dtype=int)
         filled[first] = 1
@@ -127,7 +127,7 @@ class Particles:
         return int(np.argmax(enough)) + 1 if enough.any() else len(poses)
 
     def limits(self, count: Bins) -> Array:
-        """Return how many particles so many filled bins need, after Fox (2001)."""
+        """Return how many particles a number of filled bins needs, after Fox (2001)."""
         more = np.maximum(count - 1, 1)
         part = 2.0 / (9.0 * more)
         needed = np.ceil(more / (2.0 * self.error) * (1.0 - part + np.sqrt(part) * self.z) ** 3)
@@ -177,7 +177,7 @@ def clusters_of(bins: Bins) -> Bins:
 
 
 def statistics(poses: Array, weights: Array) -> tuple[Array, Array]:
-    """Return mean and covariance of poses; the heading goes round."""
+    """Return mean and covariance of poses; the heading wraps around."""
     share = weights / weights.sum()
     x, y = share @ poses[:, :2]
     cosine, sine = share @ np.cos(poses[:, 2]), share @ np.sin(poses[:, 2])
@@ -189,25 +189,25 @@ def statistics(poses: Array, weights: Array) -> tuple[Array, Array]:
 
 
 Noise = Sequence[float]
-"""alpha1 to alpha5: how uncertain turns and ways make turns, ways and steps aside."""
+"""alpha1 to alpha5: the noise that turns and distances add to turns, distances and sideways."""
 
 
 def moved_differentially(
     poses: Array, before: Array, delta: Array, alpha: Noise, random: np.random.Generator
 ) -> Array:
-    """Return poses after a way of a robot with two wheels: a turn, a way, a turn.
+    """Return poses after a move of a robot with two wheels: a turn, a straight line, a turn.
 
     Args:
         poses: The poses.
-        before: That of the odometry before.
+        before: The pose of the odometry before the move.
         delta: Its change.
         alpha: The noise.
-        random: The source of chance.
+        random: The random number generator.
     """
     way = math.hypot(delta[0], delta[1])
     first = 0.0 if way < NO_WAY else float(wrapped(math.atan2(delta[1], delta[0]) - before[2]))
     last = float(wrapped(delta[2] - first))
-    # Driving backwards is no turn by half a circle.
+    # Driving backwards is not a turn by half a circle.
     first_size, last_size = (
         min(abs(float(wrapped(each))), abs(float(wrapped(each - math.pi))))
         for each in (first, last)
@@ -229,7 +229,7 @@ def moved_differentially(
 def moved_sideways(
     poses: Array, before: Array, delta: Array, alpha: Noise, random: np.random.Generator
 ) -> Array:
-    """Return poses after a way of a robot that drives in any direction; see above."""
+    """Return poses after a move of a robot that drives in any direction; see above."""
     way, turned = math.hypot(delta[0], delta[1]), float(delta[2])
     count = len(poses)
 

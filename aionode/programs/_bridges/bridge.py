@@ -74,7 +74,7 @@ async def serve(original: Original) -> None:
     """Serve clients until the program is ended.
 
     Raises:
-        CommandError: The port is taken, or as by `bridge`.
+        CommandError: The port is taken; or as for `bridge`.
     """
     async with Node(original.node) as node:
         gateway = bridge(node, original)

@@ -103,7 +103,7 @@ class Camera(Node):
         """Publish the pictures of a camera, or those of a file once.
 
         Raises:
-            OSError: It cannot be opened, or no longer be read.
+            OSError: It cannot be opened, or can no longer be read.
         """
         clock = wall_clock(self)
         loop = asyncio.get_running_loop()

@@ -57,7 +57,7 @@ class Frame(NamedTuple):
     Attributes:
         pixels: Its pixels.
         encoding: Their encoding.
-        jpeg: The picture as JPEG, if the camera sent it so and in this size.
+        jpeg: The picture as JPEG, if the camera sent it that way and in this size.
         picture: The picture as PyAV has it.
     """
 

@@ -24,13 +24,13 @@ STROKE: Final = 1 << 20
 """How many cells of a submap are read at a time: each cell of the map needs four or more."""
 
 DOWNSCALED: Final = 4 / 3
-"""From how many cells of a submap for each cell of the map their mean is taken, as in cairo."""
+"""From this many cells of a submap per cell of the map on, their mean is taken, as in cairo."""
 
 WIDEST: Final = 16.0
 """The most cells of a submap, in each direction, that count for one cell of the map."""
 
 ACTIVE: Final = 2
-"""How many submaps Cartographer is still changing: the last ones."""
+"""How many of the last submaps Cartographer is still changing."""
 
 SMALLEST: Final = 1e-12
 """The least part of a cell of the map that a cell of a submap has to cover."""
@@ -155,7 +155,7 @@ class Canvas:
 
 
 def inverse(matrix: Array) -> Array | None:
-    """Return the inverse of a matrix; None if a submap that is placed by it has no picture.
+    """Return the inverse of a matrix; None if a submap that it places cannot be drawn.
 
     Such a submap is seen from the side, or far smaller than a cell of the map.
     """

@@ -45,7 +45,7 @@ MAX_CELLS: Final = 1 << 27
 """The most cells of all submaps together, in 400 MB."""
 
 TELL_SEC: Final = 10.0
-"""How often a problem is named that lasts."""
+"""How often a lasting problem is logged."""
 
 NUMBERS: Final = (0.001, 100_000)
 """The least and the largest number of a flag."""
@@ -55,7 +55,7 @@ NO: Final = ("0", "f", "false", "n", "no")
 """The values of a switch, as in gflags."""
 
 IGNORED: Final = "occupancy_grid_topic"
-"""A flag that the original has, and ignores in ROS 2."""
+"""A flag that the original accepts, but ignores in ROS 2."""
 
 
 @dataclass
@@ -250,7 +250,7 @@ class OccupancyGridNode(Node):
         return await asyncio.to_thread(canvas.occupancy), canvas.origin
 
     def warn(self, text: str) -> None:
-        """Warn, not at every list."""
+        """Warn, but not at every list."""
         self.get_logger().warning(escaped(text, one_line=True), throttle_duration_sec=TELL_SEC)
 
 

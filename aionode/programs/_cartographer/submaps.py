@@ -1,4 +1,4 @@
-"""Submaps, as the service ``submap_query`` of Cartographer answers them."""
+"""Submaps, as Cartographer's service ``submap_query`` returns them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MAX_CELLS: Final = 1 << 24
 """The most cells of a submap: those of Cartographer have about 100 000."""
 
 NORMS: Final = (1e-3, 1e3)
-"""Between which the norm of an orientation is; with others, products overflow or vanish."""
+"""The range of an orientation's norm; outside of it, products overflow or vanish."""
 
 GZIP: Final = 16 + zlib.MAX_WBITS
 

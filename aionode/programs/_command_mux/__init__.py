@@ -1,1 +1,1 @@
-"""twist_mux and ackermann_mux: of several sources of commands, one is heard."""
+"""twist_mux and ackermann_mux: pass on the commands of one of several sources."""

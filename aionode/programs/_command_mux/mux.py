@@ -48,7 +48,8 @@ class Source:
     def has_expired(self) -> bool:
         """Whether the last message is too old, or there was none.
 
-        One from the future, of before the clock was set back, could stay valid for hours.
+        A message from before the clock was set back is in the future, and could stay valid for
+        hours.
         """
         return self.timeout > 0 and not 0 <= (self._now() - self.stamp_ns) / 1e9 <= self.timeout
 
@@ -189,7 +190,7 @@ class CommandMux(Node):
             for source in self.locks
         }
         values["current priority"] = str(lowest)
-        # Nothing measures these two; neither does the original.
+        # Nothing measures these two, in the original either.
         values["loop time in [sec]"] = values["data age in [sec]"] = "0"
         values["current source"] = "none" if leader is None else leader.name
         status = DiagnosticStatus(

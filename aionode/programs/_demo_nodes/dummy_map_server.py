@@ -17,7 +17,7 @@ RESOLUTION = 0.1
 
 
 class DummyMapServer(Node):
-    """Publishes `map` once a second: unknown, but for a cell between two free ones."""
+    """Publishes `map` once a second: unknown, except for a cell between two free ones."""
 
     def __init__(self) -> None:
         super().__init__("dummy_map_server")

@@ -1,4 +1,4 @@
-"""``demo_nodes_cpp listener``, and that of demo_nodes_py: logs what comes on `chatter`."""
+"""``demo_nodes_cpp listener``, and that of demo_nodes_py: logs what arrives on `chatter`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``demo_nodes_py talker``: counts from 0, and quotes otherwise than the one in C++."""
+"""``demo_nodes_py talker``: counts from 0, and quotes differently from the one in C++."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``diagnostic_aggregator aggregator_node``: aggregates diagnostics, as set by parameters."""
+"""``diagnostic_aggregator aggregator_node``: aggregates diagnostics, set up by parameters."""
 
 from __future__ import annotations
 

@@ -252,7 +252,7 @@ class Other(Items):
     """Reports on the parts that no analyzer accepts.
 
     Args:
-        path: The path of all.
+        path: The path of the whole aggregator.
         is_error: Whether their existence is an error.
         now: Returns the time, in seconds.
     """

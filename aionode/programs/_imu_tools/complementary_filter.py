@@ -78,7 +78,7 @@ class ComplementaryFilter:
             magnetic: The magnetic field, in any unit; None if it is unknown.
 
         Returns:
-            Whether it could be used: without gravity, in free fall, nothing is up in the beginning.
+            Whether it could be used: in free fall, a first measurement shows no way up.
         """
         if not all(map(math.isfinite, (*acceleration, *turning, seconds))):
             return False
@@ -100,7 +100,7 @@ class ComplementaryFilter:
             if magnetic is not None:
                 world = product(world, blended(self._to_north(world, magnetic), self.gain_mag))
             world = unit(world)
-        if not all(map(math.isfinite, world)):  # numbers near the largest have no product
+        if not all(map(math.isfinite, world)):  # products of huge numbers overflow
             return False
         self._world = world
         return True

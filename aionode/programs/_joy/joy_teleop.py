@@ -26,7 +26,7 @@ MAX_INDEX: Final = 10_000
 DEFAULT: Final = "default"
 
 MAX_UNANSWERED: Final = 100
-"""The requests of a command that may wait for their answers; more presses send none."""
+"""Maximum unanswered requests of a command; further presses send nothing."""
 
 MOTION: Final = frozenset(
     {
@@ -34,7 +34,7 @@ MOTION: Final = frozenset(
         *("ackermann_msgs/msg/AckermannDrive", "ackermann_msgs/msg/AckermannDriveStamped"),
     }
 )
-"""Commands to move until the next one, so that they end with a stop."""
+"""Commands that apply until the next one, so they must be followed by a stop."""
 
 
 def interface(name: Any, kind: str) -> Any:
@@ -69,7 +69,7 @@ def name_in(config: Mapping[str, Any], key: str, command: str) -> str:
     """Return the name of a topic, service or action.
 
     Raises:
-        CommandError: It is missing, or no text.
+        CommandError: It is missing, or not text.
     """
     found = needed(config, key, command)
     if isinstance(found, str):
@@ -78,10 +78,10 @@ def name_in(config: Mapping[str, Any], key: str, command: str) -> str:
 
 
 def parts(config: Mapping[str, Any], key: str, command: str) -> dict[str, dict[str, Any]]:
-    """Return the fields of a message and what is said about each.
+    """Return the fields of a message, and the mapping for each.
 
     Raises:
-        CommandError: They are none.
+        CommandError: The value is not such a mapping.
     """
     found = config[key]
     if isinstance(found, dict) and all(isinstance(each, dict) for each in found.values()):
@@ -96,7 +96,7 @@ def indices(config: Mapping[str, Any], key: str, command: str) -> list[int]:
     """Return the numbers of buttons or axes.
 
     Raises:
-        CommandError: They are none.
+        CommandError: The value is not a list of such numbers.
     """
     found = config.get(key, [])
     if isinstance(found, list) and all(type(each) is int and each >= 0 for each in found):
@@ -122,7 +122,7 @@ def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
     """Set a value in nested values.
 
     Raises:
-        CommandError: A part of it has a value too, or what it is a part of.
+        CommandError: A part of it has a value too, or the whole that it belongs to.
     """
     *parents, last = path
     place: Any = whole
@@ -136,9 +136,9 @@ def put(whole: dict[str, Any], path: Sequence[str], value: Any) -> None:
 
 
 class Command:
-    """Something that buttons and axes do; it is active while all of them are pressed.
+    """A command of buttons and axes; it is active while all of them are pressed.
 
-    The command `DEFAULT` needs none: then it is active while no button is pressed.
+    The command `DEFAULT` needs none: without any, it is active while no button is pressed.
 
     Args:
         name: Its name in the parameters.
@@ -160,7 +160,7 @@ class Command:
         self.is_active = False
 
     def is_pressed(self, joy: Joy) -> bool:
-        """Return whether its buttons and axes are pressed; those that are not there never are."""
+        """Return whether its buttons and axes are pressed; missing ones never are."""
         if self.is_default:
             return not any(joy.buttons)
         return (
@@ -197,7 +197,7 @@ class MessageCommand(Command):
 
 
 class AxesCommand(Command):
-    """Publishes what axes and buttons say, while it is active.
+    """Publishes the values of axes and buttons while it is active.
 
     A command that moves a robot is published under a lease, so that a stop follows it.
     """
@@ -300,7 +300,7 @@ class AxesCommand(Command):
         return int(value) if target in self.as_int else value
 
     def run(self, joy: Joy, *, is_new: bool) -> None:
-        """Publish what the axes say, or stop."""
+        """Publish the values of the axes, or stop."""
         del is_new
         self.command = None
         if self.is_active:
@@ -403,7 +403,7 @@ def command_of(name: str, config: Mapping[str, Any], node: Node) -> Command:
 
 
 class JoyTeleop(Node):
-    """Does what its parameters say of the buttons and axes of the topic `joy`.
+    """Runs the commands that its parameters assign to buttons and axes of the topic `joy`.
 
     Raises:
         CommandError: A parameter does not fit.
@@ -428,7 +428,7 @@ class JoyTeleop(Node):
         self.create_subscription(Joy, "joy", self.on_joy, QoSProfile(depth=1))
 
     def on_joy(self, joy: Joy) -> None:
-        """Do what is commanded; what is not any more ends first, since others may follow it."""
+        """Run the active commands; those no longer active end first: others may replace them."""
         states = [(command, command.is_pressed(joy)) for command in self.commands]
         for command, is_pressed in sorted(states, key=lambda state: state[1]):
             is_new = is_pressed and not command.is_active

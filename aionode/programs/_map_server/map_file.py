@@ -44,10 +44,11 @@ class MapFile:
         image: The picture.
         resolution: The width of a cell, in m.
         origin: Where the lower left corner is: x, y and yaw.
-        free: What is occupied less is free, in the modes trinary and scale.
-        occupied: What is occupied more is occupied, in these modes.
+        free: Cells that are less occupied are free, in the modes trinary and scale.
+        occupied: Cells that are more occupied are occupied, in these modes.
         negate: Whether brighter pixels are more occupied.
-        mode: What is between is unknown (trinary) or a share (scale); raw values are cells.
+        mode: Cells in between are unknown (trinary) or a percentage (scale); in the mode raw,
+            pixels are used as cells.
     """
 
     image: Path

@@ -32,7 +32,7 @@ class MapServer(LifecycleNode):
         self.create_service(LoadMap, "~/load_map", self.load)
 
     def read(self, path: str) -> int:
-        """Read a map; return how that went, as a result of `LoadMap`."""
+        """Read a map; return the outcome, as a result of `LoadMap`."""
         kind = LoadMap.Response
         if not path:
             self.get_logger().error("YAML file name is empty, can't load!")

@@ -268,7 +268,8 @@ class SensingNode(SettingsNode):
         measurement.command_ns = self.filter.control.time_ns
         self.put(measurement)
         if len(self.queue) > MAX_QUEUED:
-            # The latest is furthest from its time, and mostly of the sensor whose clock is ahead.
+            # The latest has the longest to wait, and mostly comes from a sensor whose clock is
+            # ahead.
             latest = max(self.queue)
             self.queue.remove(latest)
             heapq.heapify(self.queue)

@@ -1,1 +1,1 @@
-"""Programs of tf2_ros that look transforms up."""
+"""Programs of tf2_ros that look up transforms."""

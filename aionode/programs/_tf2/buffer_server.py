@@ -1,4 +1,4 @@
-"""``tf2_ros buffer_server``: looks transforms up for other programs."""
+"""``tf2_ros buffer_server``: looks up transforms for other programs."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ NEAR: Final = 0.02
 
 PICTURE_SEC: Final = 0.1
 STILL_PICTURES: Final = 10
-"""An unchanged picture is published once for this many that could have been published."""
+"""An unchanged picture is published only once in this many intervals."""
 
 MAX_TURTLES: Final = 100
 

@@ -1,4 +1,4 @@
-"""What a Hokuyo measures, as messages."""
+"""The measurements of a Hokuyo as messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Values = npt.NDArray[np.int64]
 
 
 class Window(NamedTuple):
-    """What is measured.
+    """What a lidar is set to measure.
 
     Attributes:
         limits: What the lidar can measure.

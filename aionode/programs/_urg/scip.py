@@ -21,7 +21,7 @@ MAX_BYTES: Final = 200_000
 """The most bytes of a reply; a scan of 5000 steps with three echoes has fewer."""
 
 MAX_LINES: Final = MAX_BYTES // 65
-"""The most lines of a reply: scans have 64 characters and a checksum in each."""
+"""The most lines of a reply: scans have 64 characters and a checksum on each."""
 
 MAX_STEPS: Final = 5000
 MAX_ECHOES: Final = 3
@@ -163,7 +163,7 @@ class Reply(NamedTuple):
 
     Attributes:
         echo: The command that it answers.
-        status: What came of it; "00" is well, and "99" precedes a scan.
+        status: The outcome; "00" means success, and "99" precedes a scan.
         lines: The lines that follow, with their checksums.
     """
 
@@ -191,13 +191,13 @@ class Reply(NamedTuple):
         return b"".join(line[:-1] for line in self.lines)
 
     def text(self, name: str, pattern: str = r"[^;\n]*") -> str:
-        """Return what follows the name of a value, as far as it has a pattern."""
+        """Return the text after the name of a value, as far as it matches a pattern."""
         found = re.search(rf"^{name}:({pattern})", "\n".join(map(latin, self.lines)), re.MULTILINE)
         return quoted(found[1]) if found else "receive error."
 
 
 def checksum(total: int) -> bytes:
-    """Return the character for the sum of others."""
+    """Return the checksum character for the sum of other characters."""
     return bytes(((total & 0x3F) + ZERO,))
 
 
@@ -253,7 +253,7 @@ class Scip:
 
         Args:
             command: The command.
-            statuses: The statuses that are well beside "00"; all, if one of them is "*".
+            statuses: The statuses that also mean success, besides "00"; "*" stands for all.
 
         Raises:
             OSError: No such reply came, it has another status or a wrong checksum.
@@ -289,7 +289,7 @@ class Scip:
         """Return what it can measure.
 
         Raises:
-            OSError: It does not answer, or not with numbers that are possible.
+            OSError: It does not answer, or answers with impossible numbers.
         """
         reply = await self.command("PP")
         texts = [reply.text(name, r"-?\d{1,9}(?!\d)") for name in NUMBERS]
@@ -332,7 +332,7 @@ def time_of(reply: Reply) -> int:
 
 
 def numbers(characters: npt.NDArray[np.uint8], size: int) -> npt.NDArray[np.int64]:
-    """Return the numbers that are written with some characters each."""
+    """Return numbers that are encoded with a fixed number of characters each."""
     digits = (characters.reshape(-1, size).astype(np.int64) - ZERO) & 0x3F
     return np.asarray(digits @ (64 ** np.arange(size - 1, -1, -1)))
 
@@ -350,7 +350,7 @@ def echoes_in(data: bytes, steps: int, *, has_intensities: bool) -> npt.NDArray[
         is none.
 
     Raises:
-        OSError: The scan is cut, or has more steps or echoes than asked for.
+        OSError: The scan is cut off, or has more steps or echoes than requested.
     """
     parts = 2 if has_intensities else 1
     characters = np.frombuffer(data, np.uint8)

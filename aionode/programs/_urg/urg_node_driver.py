@@ -37,7 +37,7 @@ START_SEC: Final = 0.01
 RETRY_SEC: Final = 0.5
 RECONNECT_SEC: Final = 2.0
 PERIODS: Final = 16
-"""The periods of a scan to wait for the next one."""
+"""How many periods to wait for the next scan."""
 
 MEASUREMENTS: Final = 10
 WELL: Final = {"Sensor works well.", "Stable 000 no error.", "sensor is working normally"}
@@ -51,7 +51,7 @@ FRAME: Final = "laser_frame_id"
 
 
 class UrgNode(Node):
-    """Publishes `scan`, or `echoes` and what they contain, and has `update_laser_status`.
+    """Publishes `scan`, or `echoes` and what they contain, and offers `update_laser_status`.
 
     Raises:
         CommandError: A parameter is invalid.
@@ -216,7 +216,7 @@ class UrgNode(Node):
             raise OSError("Error count exceeded limit")
 
     async def identify(self, scip: Scip) -> None:
-        """Ask what the lidar is, and whether it is well.
+        """Query the identity and the health of the lidar.
 
         Raises:
             OSError: It does not answer.
@@ -240,7 +240,7 @@ class UrgNode(Node):
         )
 
     def window(self, limits: Limits) -> Window:
-        """Return what is measured, as the parameters say."""
+        """Return what to measure, according to the parameters."""
         value = {each.name: each.value for each in self.get_parameters([*RANGES, *NUMBERS, FRAME])}
         first, last = sorted(limits.step(value[name]) for name in ("angle_min", "angle_max"))
         if first == last:
@@ -254,7 +254,7 @@ class UrgNode(Node):
         """Start the lidar's scans.
 
         Raises:
-            OSError: It does not.
+            OSError: The lidar does not start them.
         """
         command = window.command(skip, has_echoes=self.has_echoes, is_intense=self.has_intensities)
         try:
@@ -313,7 +313,7 @@ class UrgNode(Node):
     # Scans
 
     def take(self, reply: Reply, window: Window) -> None:
-        """Publish a scan; note the status of the lidar, if that is what came.
+        """Publish a scan, or record the status of the lidar if the reply has that instead.
 
         Raises:
             OSError: It is damaged.

@@ -57,5 +57,5 @@ class Line:
         return self.gain * value + self.offset
 
     def invert(self, value: float) -> float:
-        """Return the number of which another one is the conversion; the gain is not 0."""
+        """Return the number that is converted to a given one; the gain is not 0."""
         return (value - self.offset) / self.gain

@@ -47,7 +47,7 @@ LARGEST: Final = 2**31 - 1
 BEGIN, END = 2, 3
 """How a frame begins and ends.
 
-Those of more than 255 bytes begin differently; they answer questions that are not asked here.
+Those of more than 255 bytes begin differently; they answer requests that are not sent here.
 """
 
 VALUES: Final = struct.Struct(">hhiiiihihiiiiiiBiBhhhii")
@@ -58,13 +58,13 @@ VALUE_FIELDS: Final = {
     "distance_traveled": None, "fault_code": None, "pid_pos_now": 1_000_000, "controller_id": None,
     "ntc_temp_mos1": 10, "ntc_temp_mos2": 10, "ntc_temp_mos3": 10, "avg_vd": 1000, "avg_vq": 1000,
 }  # fmt: skip
-"""The values in their order, and by what each is divided; None for those that are whole."""
+"""The values in their order, each with its divisor; None for integers."""
 
 UUID_BYTES: Final = 12
 
 
 class Firmware(NamedTuple):
-    """What a VESC says of itself."""
+    """What a VESC reports about itself."""
 
     major: int
     minor: int
@@ -79,7 +79,7 @@ def framed(payload: bytes) -> bytes:
 
 
 def command(name: str, value: float) -> bytes:
-    """Return the payload of a command; values beyond what it can say are the largest that it can.
+    """Return the payload of a command; values that it cannot hold are clamped.
 
     Args:
         name: A name in `COMMANDS`, or ``servo``.
@@ -141,7 +141,7 @@ def frame_at(data: bytes, at: int) -> tuple[int, bytes | None]:
 
 
 def firmware_of(payload: bytes) -> Firmware | None:
-    """Return what the answer to `GET_FIRMWARE` says; None if it is too short."""
+    """Return the content of the answer to `GET_FIRMWARE`; None if it is too short."""
     if len(payload) < 3:
         return None
     hardware, _, rest = payload[3:].partition(b"\0")
@@ -151,7 +151,7 @@ def firmware_of(payload: bytes) -> Firmware | None:
 
 
 def state_of(payload: bytes) -> VescState | None:
-    """Return what the answer to `GET_VALUES` says; None if it is too short."""
+    """Return the content of the answer to `GET_VALUES`; None if it is too short."""
     if len(payload) <= VALUES.size:
         return None
     values = VALUES.unpack_from(payload, 1)
@@ -164,9 +164,9 @@ def state_of(payload: bytes) -> VescState | None:
 
 
 def imu_of(payload: bytes) -> VescImu | None:
-    """Return what the answer to `GET_IMU` says; None if it is too short or not finite.
+    """Return the content of the answer to `GET_IMU`; None if it is too short or not finite.
 
-    A mask says which values there are; the others are 0.
+    A mask says which values are present; the others are 0.
     """
     mask = int.from_bytes(payload[1:3], "big")
     count = mask.bit_count()

@@ -163,7 +163,7 @@ class VescDriver(Node):
             self.port.close()
 
     def poll(self) -> None:
-        """Ask for what the VESC measures, or, before all else, for its version."""
+        """Request the measurements of the VESC or, before anything else, its version."""
         self.unanswered += 1
         if self.unanswered == SILENT_POLLS:
             self.get_logger().warning(
@@ -177,7 +177,7 @@ class VescDriver(Node):
             self.send(packets.GET_IMU)
 
     def send(self, payload: bytes) -> None:
-        """Send a payload in a frame; of what a VESC does not take, the newest is kept."""
+        """Send a payload in a frame; while the VESC accepts nothing, only the newest is kept."""
         if self.port is not None:
             with suppress(OSError):  # it is gone, which ends `serve`, or takes nothing at all
                 self.port.write_latest(packets.framed(payload))
@@ -267,7 +267,7 @@ class VescDriver(Node):
         return on_silence
 
     def release(self) -> None:
-        """Drive the motor no more."""
+        """Stop driving the motor."""
         self.commanded = ""
         self.send(packets.RELEASE)
 

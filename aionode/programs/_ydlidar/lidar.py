@@ -1,4 +1,4 @@
-"""The conversation with a YDLIDAR: what it is, how it is set, and when it scans."""
+"""Communication with a YDLIDAR: its identity, its settings and its scans."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ BROKEN: Final = 2
 PAUSE_SEC: Final = 0.03
 FASTEST_HZ: Final = 100.0
 TG_TOO_FAST: Final = 0.4
-"""By how many hertz the frequency that TG models report is too high."""
+"""How much too high the frequency reported by TG models is, in hertz."""
 
 SOON_SEC: Final = 1.0
 LATER_SEC: Final = 2.0

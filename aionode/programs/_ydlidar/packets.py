@@ -16,7 +16,7 @@ MAX_POINTS: Final = 80
 """The most points of a packet; a larger number is not the start of one."""
 
 ERRORS: Final = 2
-"""Packets with wrong checksums in a row after which the points are taken for larger or smaller."""
+"""Consecutive wrong checksums after which points are assumed to be larger or smaller."""
 
 SAMPLES: Final = {
     0: np.dtype([("distance", "<u2")]),
@@ -32,8 +32,8 @@ class Kind(NamedTuple):
 
     Attributes:
         units: How many units of a distance are a metre.
-        beside_mm: How far the detector is beside the axis, by which near points appear turned.
-        span_mm: The distance at which they do not; 0 means at none.
+        beside_mm: How far the detector is off the axis, which makes near points appear rotated.
+        span_mm: The distance at which they do not; 0 for none.
     """
 
     units: float
@@ -73,7 +73,7 @@ class Packet(NamedTuple):
     bits: int
 
     def points(self, kind: Kind) -> Points:
-        """Return the points, for a lidar of some kind."""
+        """Return the points, for a kind of lidar."""
         count = len(self.samples)
         span = (self.last - self.first) % 360.0
         angles = np.radians(self.first + span * np.arange(count) / max(count - 1, 1))

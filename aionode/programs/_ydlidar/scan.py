@@ -27,7 +27,7 @@ class Form(NamedTuple):
         ignored: Pairs of angles between which no ranges are used, in radians.
         is_turned: Whether the zero of the lidar is at the back.
         is_mirrored: Whether angles are counted counterclockwise, unlike by the lidar.
-        missing: What stands for a range that was not measured.
+        missing: The value for a range that was not measured.
     """
 
     frame_id: str

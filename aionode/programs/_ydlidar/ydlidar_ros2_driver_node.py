@@ -25,13 +25,13 @@ __all__ = ["YdlidarDriver", "main"]
 START_SEC: Final = 0.01
 RETRY_SEC: Final = 0.3
 WAKE_SEC: Final = 0.1
-"""The longest time before a command to stop ends the scans."""
+"""The longest time until a command to stop ends the scans."""
 
 SILENCE_SEC: Final = 2.0
 """The time without a packet after which the lidar counts as lost."""
 
 CHECK_SEC: Final = 2.5
-"""The time for the first revolution, which is `abnormal_check_count` times as long."""
+"""The time for the first revolution, to be multiplied by `abnormal_check_count`."""
 
 MAX_POINTS: Final = 5000
 """The most points of a revolution; longer ones are dropped."""
