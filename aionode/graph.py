@@ -489,7 +489,7 @@ class Graph:
         return [(name, sorted(types[name])) for name in sorted(types)]
 
     def offered(self, *, user_only: bool = True) -> Offered:
-        """Return what the nodes offer, sorted: the question of tools, agents and pages.
+        """Return what the nodes offer, sorted, as tools, agents and pages need it.
 
         Most of the names of a system are of its infrastructure: every node serves its parameters,
         publishes its log and describes its types, and an action is three services and two topics.
@@ -566,7 +566,7 @@ INFRASTRUCTURE_TYPES = (
     "rosapi_msgs/srv/",
     "lifecycle_msgs/srv/GetAvailable",
 )
-"""How the types of services begin that are questions about nodes, whoever has written these."""
+"""The prefixes of the types of services that query nodes, whoever wrote the nodes."""
 
 SEND_GOAL = "/_action/send_goal"
 SEND_GOAL_TYPE = "_SendGoal"

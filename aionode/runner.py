@@ -33,7 +33,7 @@ Runnable = Node | Callable[[], Node] | Callable[[], Coroutine[Any, Any, None]]
 LoopFactory = Callable[[], asyncio.AbstractEventLoop]
 
 STARTED_SEC = 1.0
-"""The seconds after which a program has imported and created most of what it keeps."""
+"""Seconds after which a program has imported and created most of what it keeps."""
 
 
 def run(

@@ -63,7 +63,7 @@ class Distribution:
 
     @property
     def buckets(self) -> dict[int, int]:
-        """How many durations there are by the number of their bucket, to be sent elsewhere."""
+        """The number of durations in each bucket, by bucket number, to be sent elsewhere."""
         return dict(self._read())
 
     def record(self, duration_ns: int) -> None:

@@ -151,7 +151,8 @@ class Context:
             goals, which makes them the same in every run. Callbacks that block the loop are not
             reported then, as this depends on the machine. By default ids are unique.
         causes: Whether to keep what caused each message, for ``aionode why`` and `observe.why`;
-            defaults to ``AIONODE_CAUSES`` (``1`` or ``0``), or no, as it makes messages dearer.
+            defaults to ``AIONODE_CAUSES`` (``1`` or ``0``), or off, as it makes messages more
+            expensive.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
@@ -418,7 +419,7 @@ class Context:
             raise
 
     def _forget(self, task: asyncio.Task[Any] | None) -> None:
-        """Count one node or block of a task less."""
+        """Take one node or block of a task off its count."""
         if self._users[task] > 1:
             self._users[task] -= 1
         else:
@@ -510,7 +511,7 @@ class Context:
         The event loops of other threads keep running, and send their own.
 
         Returns:
-            Whether there is a network, whose threads need a moment more.
+            Whether there is a network, whose threads need a moment longer.
         """
         is_connected = False
         for context in list(cls._all):

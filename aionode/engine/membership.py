@@ -143,7 +143,7 @@ def describe_endpoint(
     ros_type: Any,
     profile: QoSProfile,
 ) -> EndpointInfo:
-    """Return the graph entry of a new endpoint; its profile fits what is known of the others."""
+    """Return the graph entry of a new endpoint; its profile is adapted to opposite ones."""
     others = [other.qos for other in context.graph.endpoints(kind.opposite, name=name)]
     if kind is EndpointKind.PUBLISHER:
         profile = best_available_for_publisher(profile, others)

@@ -74,7 +74,7 @@ class LifecycleManager:
         for name in self.node_names:
             self._changes[name] = node.create_client(ChangeState, f"{name}/change_state")
             self._states[name] = node.create_client(GetState, f"{name}/get_state")
-        self._last_states: dict[str, str] = {}  # as known without asking
+        self._last_states: dict[str, str] = {}  # as far as known without asking
         self._events: EventSource[ManagedNodeEvent] = EventSource()
         self._tasks: asyncio.TaskGroup | None = None
         self._watch: NodeWatch | None = None

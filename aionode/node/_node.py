@@ -829,8 +829,8 @@ class Node(ParameterMethods, GraphQueries):
     ) -> ServiceClass[Message, Message]:
         """Return the class of a service type that is known by its name; see `find_type`.
 
-        Code over any service is checked by that: the result fits `create_client`, and its
-        ``Request`` fits `json_schema` and `from_builtins`::
+        Code for arbitrary services passes type checks with it: the result fits `create_client`, and
+        its ``Request`` fits `json_schema` and `from_builtins`::
 
             service = await node.find_service("std_srvs/srv/SetBool")
             request = from_builtins(service.Request, {"data": True})
@@ -995,7 +995,7 @@ def endpoint_setup(
 
 
 def timer_causes(core: NodeCore, period_sec: float) -> tuple[CauseLog, Party] | None:
-    """Return where the calls of a new timer are noted, and as whose; None if they are not."""
+    """Return the log for the calls of a new timer, and the timer as their party; or None."""
     log = core.context.causes
     if log is None:
         return None

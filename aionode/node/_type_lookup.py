@@ -131,7 +131,7 @@ def with_hash(message_type: Any, user: EndpointInfo) -> Any:
     """Return a class after checking that it has the type hash of an endpoint.
 
     Raises:
-        TypeDescriptionError: it has another one.
+        TypeDescriptionError: it has a different one.
     """
     if user.type_hash not in {"", NO_TYPE_HASH, type_hash(message_type)}:
         raise TypeDescriptionError(
@@ -152,7 +152,7 @@ async def description_of(node: NodeMethods, user: EndpointInfo) -> Any | None:
         return None
     client = node.create_client(GetTypeDescription, service)
     request = GetTypeDescription.Request(type_name=user.type_name, type_hash=user.type_hash)
-    acting_for = CAUSES.set(())  # a description causes nothing that the caller sends
+    acting_for = CAUSES.set(())  # not a cause of what the caller sends
     try:
         response: Any = await client.call(request, timeout_sec=ANSWER_S)
     except AionodeError:

@@ -43,12 +43,12 @@ class WatchedGoal:
     Attributes:
         gid: The gid of its client of the goal service.
         client: The full name of its node; empty if unknown.
-        candidates: The gids of the clients one of which sent the goal, if the middleware does not
-            say which.
+        candidates: The gids of the clients that may have sent the goal, if the middleware does not
+            say which one did.
         found_by_ns: Steady time until which the client may still be discovered, after its goal.
         heard_ns: Steady time of its last sign of life; None if it never sent one.
-        gone_ns: Steady time from which on it counts as lost for not being in the graph; None while
-            it is in the graph.
+        gone_ns: Steady time from which it counts as lost because it is not in the graph; None while
+            it is.
     """
 
     gid: bytes

@@ -668,7 +668,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 def send_for_others(
     client: ActionClient[Any, Any, Any], tell_goes_on: Callable[[str], None]
 ) -> None:
-    """Mark the goals of a client as those of others, who may be lost while it stays.
+    """Mark the goals of a client as sent for others, who may be lost while it stays.
 
     Args:
         client: The action client, such as one of a gateway; see `lost_id`.

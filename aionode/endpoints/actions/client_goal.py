@@ -36,7 +36,7 @@ class ActionResult(Generic[ResultT]):
 
     Attributes:
         status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not know
-            the goal, or no longer.
+            the goal, or no longer does.
         result: The result message; an empty one if the server had none.
         error_text: Why the goal was aborted, or canceled by a server that had lost its client;
             empty if no reason was given, or if the server does not run aionode.

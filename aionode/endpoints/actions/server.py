@@ -108,12 +108,13 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             or async.
         goal_callback: Called with each goal message, one at a time; returns `GoalResponse.ACCEPT`
             or ``REJECT``, or raises `GoalRejected` with a reason, which the client gets if it runs
-            aionode. Without it all are accepted. Sync or async.
+            aionode. Without it, all goals are accepted. Sync or async.
         handle_accepted_callback: Called with the handle of each accepted goal, after the client has
             been told; should call ``goal_handle.execute()``, then or later. Without it, goals are
             executed at once. Sync or async.
         cancel_callback: Called with the handle of a goal that a client wants to cancel; returns
-            `CancelResponse.ACCEPT` or ``REJECT``. Without it all are rejected. Sync or async.
+            `CancelResponse.ACCEPT` or ``REJECT``. Without it, all requests are rejected. Sync or
+            async.
         result_timeout: How long a result is kept after the end of its goal, in seconds. With 0 it
             is sent only to clients that asked before the end.
         max_goals: How many goals may be active at once: further ones are rejected without asking

@@ -143,7 +143,7 @@ class CallbackRunner:
         self._last_report_ns = -REPORT_INTERVAL_NS
 
     def party_of(self, endpoint: EndpointInfo) -> Party:
-        """Return who takes what arrives at an endpoint, with the name of the callback."""
+        """Return the party that takes what arrives at an endpoint, with the callback's name."""
         return Party.of(endpoint, self.naming())
 
     def naming(self) -> Callable[[], str]:
@@ -320,8 +320,8 @@ class CallbackRunner:
     def report_blocking(self, took_ns: int, waited_ns: int | None) -> None:
         """Warn that the loop was blocked for too long, at most once per second.
 
-        The time for which the thread waited for a processor is not the callback's, which could do
-        nothing about it; nor is that for which a person looks at it in a debugger.
+        The time that the thread waited for a processor does not count, since the callback could do
+        nothing about it; nor does the time that a person looks at it in a debugger.
 
         Args:
             took_ns: How long the callback held the loop.

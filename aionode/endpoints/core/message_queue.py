@@ -132,8 +132,8 @@ class MessageQueue(InlineCall, Generic[T]):
 
         Args:
             item: The item.
-            is_own: Whether this process has made it: of such ones the first that has to wait is
-                weighed, and others from `own_from` on.
+            is_own: Whether this process has made it: the first such item that has to wait is
+                weighed, and later ones from `own_from` items on.
         """
         queue = self.items
         count = len(queue)

@@ -15,7 +15,7 @@ __all__ = ["NotingWriter"]
 class NotingWriter(Writer):
     """A writer after a publisher's other writers, which notes each message they have accepted.
 
-    That way publishers of which nothing is to be noted do no extra work per message.
+    That way publishers whose messages are not noted do no extra work per message.
 
     Args:
         writers: The other writers.

@@ -45,13 +45,13 @@ def entity_reports(entities: Iterable[Any]) -> list[EntityReport]:
 
 @cache
 def kind_of(cls: Any) -> str | None:
-    """Return what entities of a class are called; None for those without stats."""
+    """Return the kind of the entities of a class, as text; None for those without stats."""
     return next((KINDS[base.__name__] for base in cls.__mro__ if base.__name__ in KINDS), None)
 
 
 @cache
 def named_in(cls: Any, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return which of some names the stats of a class have."""
+    """Return those of the given names that the stats of a class have."""
     have = {*dir(cls), *(name for base in cls.__mro__ for name in getattr(base, "__slots__", ()))}
     return tuple(name for name in names if name in have)
 

@@ -265,7 +265,7 @@ class SilenceWatch:
         return False  # until the next message
 
     def _fire(self) -> None:
-        """Drop and cancel whatever may still drive, and schedule `on_silence`."""
+        """Drop and cancel whatever may still move the robot, and schedule `on_silence`."""
         self._forget()
         self._due = True
         self._reader.discard()
@@ -336,8 +336,8 @@ class SilenceWatch:
     def _fire_if_deserted(self) -> None:
         """Fire if the publisher of the newest message has left and no other was heard lately.
 
-        But not before that message was passed to the callback, as a publisher may be created for a
-        single message.
+        It does not fire before that message was passed to the callback, as a publisher may be
+        created for a single message.
         """
         if not (self._handed and self._runs and self._newest) or self._newest in self._heard:
             return

@@ -453,7 +453,7 @@ class CausalReader(SubscriptionReader):
         return handle_arrived
 
     def taken(self, entered_ns: int, arrived: Arrived) -> Any:
-        """Return the item that the current task has read, and what it sends from now on is for."""
+        """Return the item that the current task has read: a cause of what it sends from now on."""
         now_ns = perf_ns()
         take(Run(self._party, "message", arrived.gid, arrived.sequence, entered_ns, now_ns))
         return arrived.item

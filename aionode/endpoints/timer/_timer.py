@@ -56,7 +56,7 @@ TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
 """The callback of a timer, sync or async; an awaitable result is awaited."""
 
 TimerCall = Callable[[int, int], Coroutine[Any, Any, None] | None]
-"""Makes a call that was due at the first time, at the second; returns what is left to await."""
+"""Makes a call, given when it was due and when it is made; returns what is left to await."""
 
 RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
 """Creates the runner of a timer's callback, with the options passed to `create_timer`."""
