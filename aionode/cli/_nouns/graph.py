@@ -57,8 +57,8 @@ LARGEST: Final = 64 * 2**20
 def graph_command(json: bool, **options: Any) -> None:
     """Draw nodes and the topics, services and actions that they share.
 
-    NAMES restrict it to those nodes, topics, services and actions, and to what they are connected
-    with; a name that ends in a slash stands for all below it. Mismatches are red, with their
+    NAMES restrict it to those nodes, topics, services and actions, and to whatever these connect
+    to; a name that ends in a slash stands for everything below it. Mismatches are red, with their
     reasons. The exit status is 1 if something does not match.
     """
     run_verb(lambda node, output: draw(node, output=output, **options), json=json)

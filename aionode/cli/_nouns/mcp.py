@@ -86,7 +86,7 @@ def set_variable(ctx: click.Context, param: click.Parameter, value: Any) -> None
 @robot_options
 @click.option(
     "--print-config", "host", metavar="PROGRAM", is_flag=False, flag_value="all",
-    help="Print the settings with which a program starts this command and these options: "
+    help="Print the settings with which a program starts this command with these options: "
     "claude-desktop, claude-code, cursor, vscode, windsurf, gemini-cli, codex or zed; without a "
     "name, all of them.",
 )  # fmt: skip

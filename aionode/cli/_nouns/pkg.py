@@ -20,11 +20,11 @@ __all__ = ["executables", "list_packages", "manifest", "pkg_command", "prefix"]
 
 @click.group("pkg")
 def pkg_command() -> None:
-    """Show packages of ROS 2: of the workspace, installed, and those that aionode stands in for."""
+    """Show packages of ROS 2: in the workspace, installed, and those that aionode stands in for."""
 
 
 def known() -> tuple[Packages, list[str]]:
-    """Return the packages around the current folder, and the names of all."""
+    """Return the packages around the current folder, and the names of all packages."""
     packages = around(Path.cwd())
     return packages, sorted({*packages.names(), *standard_packages()})
 
@@ -39,7 +39,7 @@ def list_packages(*, output: Output) -> None:
     pkg_command,
     "executables",
     click.argument("package_name", required=False),
-    click.option("--full-path", is_flag=True, help="Show what is started, by its path."),
+    click.option("--full-path", is_flag=True, help="Show the path of what is started."),
     node=False,
 )
 def executables(package_name: str | None, *, output: Output, full_path: bool = False) -> None:

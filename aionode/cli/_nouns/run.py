@@ -92,7 +92,7 @@ def run_nodes(args: Sequence[str], programs: Programs) -> None:
     """Run the nodes named before ``--ros-args`` in this process.
 
     Raises:
-        UsageError: there is an option before ``--ros-args``, or nothing is.
+        UsageError: there is an option, or nothing at all, before ``--ros-args``.
         CommandError: a node is missing, or a file that runs its own nodes is not alone.
     """
     # Imported late: a program that replaces this process needs no nodes here.

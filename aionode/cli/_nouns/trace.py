@@ -36,8 +36,9 @@ def trace_command() -> None:
 async def record(node: Node, path: Path, *, output: Output, duration: float = 10.0) -> int:
     """Record the callbacks of all processes, with arrows for messages, into FILE.
 
-    https://ui.perfetto.dev and chrome://tracing open it. Processes take part if they keep causes:
-    they are started with AIONODE_CAUSES=1; the others are named. The exit status is 1 if none does.
+    https://ui.perfetto.dev and chrome://tracing open it. Processes take part if they keep causes,
+    that is, are started with AIONODE_CAUSES=1; the others are named. The exit status is 1 if none
+    does.
 
     Args:
         node: The command's node.

@@ -38,7 +38,7 @@ __all__ = ["explain", "why_command"]
     metavar="BAG",
     help="Answer from a recording with causes: `aionode bag record --causes`.",
 )
-@click.option("--at", type=seconds, help="With --from: at this time after its start, in s.")
+@click.option("--at", type=seconds, help="With --from: as of this time after its start, in s.")
 @json_option
 @ros2_options
 def why_command(
@@ -47,8 +47,8 @@ def why_command(
     """Show what led to the latest message of a topic, from callback to callback.
 
     NAME is a topic, a service, an action, a node, or the id of a goal. Processes keep causes if
-    they are started with AIONODE_CAUSES=1; the others are named. Nodes of ROS 2 are where a chain
-    ends. The exit status is 1 if nothing is known of the name.
+    they are started with AIONODE_CAUSES=1; the others are named. A chain ends at nodes of
+    ROS 2. The exit status is 1 if nothing is known of the name.
     """
     if bag_path is not None:
         raise click.exceptions.Exit(explain_recorded(bag_path, name, at, Output(json=json)))

@@ -172,6 +172,6 @@ def is_rclpy_program(name: str) -> bool:
     packages = {module.partition(".")[0] for module in modules}
     if "rclpy" in packages:
         return True
-    from aionode.interfaces import shipped_packages  # it loads what messages are made of
+    from aionode.interfaces import shipped_packages  # it loads the base of all messages
 
     return not packages.isdisjoint(shipped_packages())

@@ -160,9 +160,9 @@ def list_command(what: str, json: bool) -> None:
 # Copying and repairing
 
 span_options = [
-    click.option("--start", help="Start of the piece, from the start of the bag, as 10s."),
-    click.option("--end", help="End of the piece, from the start of the bag, as 15s."),
-    click.option("--duration", help="Duration of the piece, as 5s."),
+    click.option("--start", help="Start of the piece, from the start of the bag, such as 10s."),
+    click.option("--end", help="End of the piece, from the start of the bag, such as 15s."),
+    click.option("--duration", help="Duration of the piece, such as 5s."),
 ]
 compression_option = click.option(
     "--compression", type=click.Choice(["zstd", "zstd_small", "lz4", "none"]), default="zstd",

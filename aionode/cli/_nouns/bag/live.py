@@ -137,7 +137,7 @@ def set_level(node: Node, level: str | None) -> None:
 @click.option(
     "--causes",
     is_flag=True,
-    help="Also what `aionode why --from` needs, of processes with AIONODE_CAUSES=1.",
+    help="Also what `aionode why --from` needs, from processes with AIONODE_CAUSES=1.",
 )
 @click.option("--custom-data", multiple=True, help="KEY=VALUE pairs for the metadata.")
 @click.option(
@@ -175,7 +175,7 @@ def set_level(node: Node, level: str | None) -> None:
 def record_command(**values: Any) -> None:
     """Record topics until Ctrl-C. SPACE pauses and resumes.
 
-    Each TOPIC is as one of --topics.
+    A TOPIC has the same effect as one of --topics.
     """
     from aionode.bag import Recorder
     from aionode.engine.context import Context

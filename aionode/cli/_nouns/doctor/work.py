@@ -32,7 +32,7 @@ ENOUGH: Final = 5
 """Minimum number of calls between two snapshots for a callback to be judged."""
 
 MANY: Final = 0.01
-"""Fraction of dropped messages from which on drops are reported."""
+"""Fraction of dropped messages from which drops are reported."""
 
 LOOKING_S = 1.2
 """Time between two snapshots, during which statuses are received, in seconds: most nodes publish

@@ -44,8 +44,8 @@ def learn_command() -> None:
 def check_command(contract: str, length: float, json: bool) -> None:
     """Compare a running robot with a contract.
 
-    Prints the rate of each topic, its age at a picture and its QoS, and what does not fit. The exit
-    status is 1 if something does not.
+    Prints the rate of each topic, its age at each picture and its QoS, and what does not fit. The
+    exit status is 1 if something does not.
     """
     from aionode.learn import Contract, check
 
@@ -144,9 +144,9 @@ def episode_keys(episodes: Episodes, tasks: asyncio.TaskGroup) -> dict[str, Call
 def export_command(episodes: tuple[str, ...], out: str, **values: Any) -> None:
     """Convert episodes to a data set of LeRobot, format v3.0.
 
-    Each of EPISODES is a bag, or a folder of bags. Each picture of the contract's reference is a
-    row; everything else is as of its time. Prints what became of the messages. The exit status is 1
-    if a limit is exceeded. An export that was interrupted continues when it is started again.
+    Each of EPISODES is a bag, or a folder of bags. Each picture of the contract's reference becomes
+    a row; everything else is as of its time. Prints what became of the messages. The exit status is
+    1 if a limit is exceeded. An export that was interrupted continues when it is started again.
     """
     from aionode.learn import Contract, Limits, export
 

@@ -300,7 +300,7 @@ async def get(
 ) -> int:
     """Print the values of parameters of a node, or of one parameter of all nodes.
 
-    A single name is that of a parameter, which is asked of every node.
+    A single name is taken as a parameter, and every node is asked for it.
 
     Returns:
         The exit status.
@@ -358,7 +358,7 @@ async def get_everywhere(
     if not any(answers):
         if absolute(name) in node_names(node, hidden=True):
             raise CommandError(
-                f"'{name}' is a node; 'aionode param list {name}' has its parameters"
+                f"'{name}' is a node; 'aionode param list {name}' lists its parameters"
             )
         raise CommandError(
             f"Parameter '{name}' is set on none of {len(names)} nodes; 'aionode param list' has "
@@ -382,13 +382,13 @@ def print_value(
 
 
 def complete_pairs(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the name of a parameter; nothing in the place of its value."""
+    """Complete the name of a parameter; offer nothing for its value."""
     given = ctx.params.get("pairs") or ()
     return [] if len(given) % 2 else complete_of_node(names_of)(ctx, param, incomplete)
 
 
 def expect_pairs(options: dict[str, Any]) -> None:
-    """Make pairs of the names and values that are given in turn."""
+    """Pair up the names and values, which are given alternately."""
     given = options["pairs"]
     if len(given) % 2:
         raise click.UsageError(f"Parameter {given[-1]!r} has no value: give NAME VALUE for each.")

@@ -124,7 +124,7 @@ class NodeScreen(ModalScreen[None]):
 
     @contextmanager
     def telling(self) -> Iterator[None]:
-        """Show why something has failed in the block."""
+        """Show why something failed in the block."""
         try:
             yield
         except AionodeError as error:

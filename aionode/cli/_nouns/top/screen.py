@@ -119,7 +119,7 @@ class TopApp(App[None]):
     async def look(self) -> None:
         """Take a snapshot of all processes, and show what they have done since the last one."""
         before, self._before = self._before, await observe(self._node)
-        if before is None or self._paused or not self.query("#notes"):  # it ends
+        if before is None or self._paused or not self.query("#notes"):  # the view is closing
             return
         found = rates(before, self._before)
         self._tables = tables_of(found) | {"diagnostics": diagnostics(self._statuses.values())}

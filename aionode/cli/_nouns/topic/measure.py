@@ -102,7 +102,7 @@ def expect_names(options: dict[str, Any]) -> None:
 
 
 def wanted_topics(node: Node, given: Sequence[str], *, every: bool, output: Output) -> list[str]:
-    """Return the full names of the topics to measure, and say how many there are of all."""
+    """Return the full names of the topics to measure; if those are all, print their number."""
     if not every:
         return list(dict.fromkeys(map(node.resolve_topic_name, given)))
     names = sorted(TOPIC.types_by_name(node))
@@ -189,7 +189,7 @@ class Meter:
         raw: bool,
     ) -> None:
         """Call `on_message` with each message that arrives once publishers are connected."""
-        others = len(self._node.context.transports) > 1  # beyond this process
+        others = len(self._node.context.transports) > 1  # not only within this process
         begins_ns = self._node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
 
         def when_connected(msg: Any, info: MessageInfo) -> None:
@@ -457,7 +457,7 @@ class BandwidthTable:
         self._bandwidths[name].arrive(info["received_timestamp"], len(data))
 
     def update(self) -> bool:
-        """Compute the bandwidths of now; return whether there are any."""
+        """Compute the current bandwidths; return whether there are any."""
         now_ns = self._now_ns()
         self.shown = {name: each.rate(now_ns) for name, each in self._bandwidths.items()}
         return any(self.shown.values())

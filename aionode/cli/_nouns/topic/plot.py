@@ -1,4 +1,4 @@
-"""``aionode topic plot``: numbers of messages over time, in the terminal or as a picture."""
+"""``aionode topic plot``: numeric fields over time, in the terminal or as a picture."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ async def plot(
     png: str | None = None,
     bag_path: str | None = None,
 ) -> None:
-    """Plot numbers of messages over time, such as /odom.twist.twist.linear.x.
+    """Plot numbers in messages over time, such as /odom.twist.twist.linear.x.
 
     All are on one scale. A terminal shows them as they arrive; elsewhere the chart is printed at
     the end, by Ctrl-C or --duration, one for each field. --json prints each value.
@@ -119,7 +119,7 @@ class Number:
         topic, dot, self.path = text.partition(".")
         if not dot or not topic or not self.path:
             raise CommandError(
-                f"Invalid field '{text}': give topic and field, as /odom.twist.twist.linear.x"
+                f"Invalid field '{text}': give topic and field, such as /odom.twist.twist.linear.x"
             )
         self.topic = node.resolve_topic_name(topic)
         self.line = Line(f"{self.topic}.{self.path}", keep_ns)

@@ -19,7 +19,7 @@ SCRIPTS: Final = Path(__file__).parent
 
 OPTIONS: Final = (
     *("-o", "ConnectTimeout=10"),
-    *("-o", "ServerAliveInterval=5", "-o", "ServerAliveCountMax=3"),  # a link that is gone ends it
+    *("-o", "ServerAliveInterval=5", "-o", "ServerAliveCountMax=3"),  # end when the link is lost
 )
 LOST: Final = 255
 """The exit status of ssh if its connection failed or broke."""
