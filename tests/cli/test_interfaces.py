@@ -32,7 +32,7 @@ def test_show_says_what_a_type_is_for(screen: Any) -> None:
         "# Have something done that needs no arguments.\n\n"
         "# Nothing: the call is the request.\n"
         "---\n"
-        "# Whether it was done, and a word on how.\n\n"
+        "# Whether it was done, and a text about it.\n\n"
         "bool success\nstring message\n"
         f"{own}"
         "# A point in space: coordinates in m.\n\n"

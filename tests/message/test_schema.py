@@ -60,8 +60,8 @@ def test_the_schema_of_a_message_is_an_object_for_tools() -> None:
                 "title": "Vector3",
                 "type": "object",
                 "description": (
-                    "A direction with a length, in the unit of what it is used for; "
-                    "a place is a Point."
+                    "A direction with a length, in a unit that depends on its use; "
+                    "a position is a Point."
                 ),
                 "properties": {axis: {"type": "number", "default": 0.0} for axis in "xyz"},
                 "additionalProperties": False,

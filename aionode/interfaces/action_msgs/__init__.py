@@ -1,1 +1,1 @@
-"""Interfaces of action_msgs: what every action is carried out with."""
+"""Interfaces of action_msgs: the messages and the service behind every action."""

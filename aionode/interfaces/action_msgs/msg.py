@@ -20,7 +20,7 @@ class GoalInfo(Message, typename="action_msgs/msg/GoalInfo"):
 
 
 class GoalStatus(Message, typename="action_msgs/msg/GoalStatus"):
-    """In which state of its life a goal is; `status` is one of the constants."""
+    """The state of a goal; `status` is one of the constants."""
 
     STATUS_UNKNOWN: ClassVar[int8] = 0
     STATUS_ACCEPTED: ClassVar[int8] = 1

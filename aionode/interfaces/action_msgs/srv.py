@@ -17,8 +17,9 @@ class CancelGoal(ServiceType, typename="action_msgs/srv/CancelGoal"):
     class Request(Message):
         """Which goals to cancel.
 
-        An id and no stamp means that goal, a stamp and no id every goal accepted up to then, both
-        mean the one and the others, and neither means all goals. All zeros are no id or stamp.
+        An id without a stamp means that goal, a stamp without an id every goal accepted up to then,
+        both mean that goal and those goals, and neither means all goals. All zeros count as no id
+        or stamp.
         """
 
         goal_info: GoalInfo = DEFAULT

@@ -9,7 +9,7 @@ __all__ = ["Duration", "Time"]
 
 
 class Time(Message, typename="builtin_interfaces/msg/Time"):
-    """A point in time: since 1970 (UTC) for system time, else since what the clock begins with.
+    """A point in time: since 1970 (UTC) for system time, else since the start of the clock.
 
     Attributes:
         sec: Whole seconds.

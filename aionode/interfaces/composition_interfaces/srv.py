@@ -35,7 +35,7 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
             plugin_name: The component's class, such as ``demo_nodes_cpp::Talker``.
             node_name: Name for the node; its own if empty.
             node_namespace: Namespace for the node; its own if empty.
-            log_level: Severity as in rcl_interfaces/msg/Log; 0 leaves it.
+            log_level: Severity as in rcl_interfaces/msg/Log; 0 leaves it unchanged.
             remap_rules: Rules such as ``chatter:=/news``.
             parameters: Parameters for the node.
             extra_arguments: Options for the container, such as ``use_intra_process_comms``.
@@ -51,7 +51,7 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
         extra_arguments: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """Whether the node was loaded, or why not, and the id to unload it by."""
+        """Whether the node was loaded, or why not, and the id for unloading it."""
 
         success: bool = False
         error_message: str = ""
@@ -63,7 +63,7 @@ class UnloadNode(ServiceType, typename="composition_interfaces/srv/UnloadNode"):
     """Remove a node from a component container."""
 
     class Request(Message):
-        """The id that LoadNode gave."""
+        """The id that LoadNode returned."""
 
         unique_id: uint64 = 0
 

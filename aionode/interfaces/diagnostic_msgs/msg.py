@@ -12,7 +12,7 @@ __all__ = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]
 
 
 class KeyValue(Message, typename="diagnostic_msgs/msg/KeyValue"):
-    """A value with what it is called, both as text."""
+    """A name and a value, both as text."""
 
     key: str = ""
     value: str = ""
@@ -42,7 +42,7 @@ class DiagnosticStatus(Message, typename="diagnostic_msgs/msg/DiagnosticStatus")
 
 
 class DiagnosticArray(Message, typename="diagnostic_msgs/msg/DiagnosticArray"):
-    """What several parts of a robot report of their health at one time."""
+    """What several parts of a robot report about their health at one time."""
 
     header: Header = DEFAULT
     status: Annotated[list[DiagnosticStatus], Sequence[DiagnosticStatus]] = DEFAULT

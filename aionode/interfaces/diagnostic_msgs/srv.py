@@ -12,7 +12,7 @@ __all__ = ["AddDiagnostics", "SelfTest"]
 
 
 class AddDiagnostics(ServiceType, typename="diagnostic_msgs/srv/AddDiagnostics"):
-    """Have a diagnostics aggregator take in further analyzers."""
+    """Add analyzers to a diagnostics aggregator."""
 
     class Request(Message):
         """The namespace that holds the parameters of the analyzers."""

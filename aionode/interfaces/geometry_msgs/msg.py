@@ -53,7 +53,7 @@ class Point(Message, typename="geometry_msgs/msg/Point"):
 
 
 class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
-    """A rotation as a quaternion of length 1; without values it is no rotation at all."""
+    """A rotation as a quaternion of length 1; by default, no rotation."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -76,7 +76,7 @@ class PoseStamped(Message, typename="geometry_msgs/msg/PoseStamped"):
 
 
 class Vector3(Message, typename="geometry_msgs/msg/Vector3"):
-    """A direction with a length, in the unit of what it is used for; a place is a Point."""
+    """A direction with a length, in a unit that depends on its use; a position is a Point."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -167,7 +167,7 @@ class AccelStamped(Message, typename="geometry_msgs/msg/AccelStamped"):
 
 
 class AccelWithCovariance(Message, typename="geometry_msgs/msg/AccelWithCovariance"):
-    """Acceleration, in m/s² and rad/s², and how sure it is.
+    """Acceleration, in m/s² and rad/s², and how certain it is.
 
     `covariance` is a 6 by 6 matrix, row by row over x, y, z and the rotations about x, y, z.
     """
@@ -184,13 +184,13 @@ class AccelWithCovarianceStamped(Message, typename="geometry_msgs/msg/AccelWithC
 
 
 class Inertia(Message, typename="geometry_msgs/msg/Inertia"):
-    """How the mass of a body is spread.
+    """How the mass of a body is distributed.
 
     Attributes:
         m: Mass, in kg.
         com: Center of mass, in m.
         ixx, ixy, ixz, iyy, iyz, izz: Inertia tensor about the center of mass, in kg·m²; it is
-            symmetric, so six numbers are all.
+            symmetric, so six numbers suffice.
     """
 
     m: float64 = 0.0
@@ -211,7 +211,7 @@ class InertiaStamped(Message, typename="geometry_msgs/msg/InertiaStamped"):
 
 
 class Point32(Message, typename="geometry_msgs/msg/Point32"):
-    """A point in space, in m, with 32 bits a coordinate: for many points, not for one."""
+    """A point in space, in m, with 32 bits per coordinate: for many points, not for one."""
 
     x: float32 = 0.0
     y: float32 = 0.0
@@ -225,7 +225,7 @@ class Polygon(Message, typename="geometry_msgs/msg/Polygon"):
 
 
 class PolygonInstance(Message, typename="geometry_msgs/msg/PolygonInstance"):
-    """A polygon with an id that tells it from others."""
+    """A polygon with an id that distinguishes it from others."""
 
     polygon: Polygon = DEFAULT
     id: int64 = 0
@@ -253,7 +253,7 @@ class PoseArray(Message, typename="geometry_msgs/msg/PoseArray"):
 
 
 class PoseWithCovariance(Message, typename="geometry_msgs/msg/PoseWithCovariance"):
-    """A pose and how sure it is.
+    """A pose and how certain it is.
 
     `covariance` is 6 by 6 in m² and rad², row by row over x, y, z and the rotations about x, y, z.
     """
@@ -277,7 +277,7 @@ class QuaternionStamped(Message, typename="geometry_msgs/msg/QuaternionStamped")
 
 
 class TwistWithCovariance(Message, typename="geometry_msgs/msg/TwistWithCovariance"):
-    """A velocity, in m/s and rad/s, and how sure it is.
+    """A velocity, in m/s and rad/s, and how certain it is.
 
     `covariance` is a 6 by 6 matrix, row by row over x, y, z and the rotations about x, y, z.
     """
@@ -304,9 +304,9 @@ class VelocityStamped(Message, typename="geometry_msgs/msg/VelocityStamped"):
     """A velocity of one frame seen from another, in m/s and rad/s.
 
     Attributes:
-        header: Time, and the frame whose axes the numbers are along.
+        header: Time, and the frame in whose axes the velocity is given.
         body_frame_id: What moves.
-        reference_frame_id: What it moves against.
+        reference_frame_id: What it moves relative to.
         velocity: The velocity.
     """
 

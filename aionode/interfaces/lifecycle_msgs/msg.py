@@ -30,7 +30,7 @@ class State(Message, typename="lifecycle_msgs/msg/State"):
 
 
 class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
-    """A move of a managed node between states: a number, one of the constants, and its name."""
+    """A transition of a managed node between states: a number, one of the constants, and its name."""
 
     TRANSITION_CREATE: ClassVar[uint8] = 0
     TRANSITION_CONFIGURE: ClassVar[uint8] = 1
@@ -68,7 +68,7 @@ class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
 
 
 class TransitionDescription(Message, typename="lifecycle_msgs/msg/TransitionDescription"):
-    """A move of a managed node, with where it starts and where it leads."""
+    """A transition of a managed node, with its start and goal states."""
 
     transition: Transition = DEFAULT
     start_state: State = DEFAULT
@@ -76,9 +76,9 @@ class TransitionDescription(Message, typename="lifecycle_msgs/msg/TransitionDesc
 
 
 class TransitionEvent(Message, typename="lifecycle_msgs/msg/TransitionEvent"):
-    """A move that a managed node made; `timestamp` is in ns.
+    """A transition that a managed node made; `timestamp` is in ns.
 
-    From ROS 2 Lyrical on this type is another one: see the page on interfaces.
+    From ROS 2 Lyrical on, this type is a different one: see the page on interfaces.
     """
 
     timestamp: uint64 = 0

@@ -15,7 +15,7 @@ class ChangeState(ServiceType, typename="lifecycle_msgs/srv/ChangeState"):
     """Have a managed node change its state."""
 
     class Request(Message):
-        """Which move to make; by `label` if `id` is 0."""
+        """Which transition to make; by `label` if `id` is 0."""
 
         transition: Transition = DEFAULT
 
@@ -38,13 +38,13 @@ class GetAvailableStates(ServiceType, typename="lifecycle_msgs/srv/GetAvailableS
 
 
 class GetAvailableTransitions(ServiceType, typename="lifecycle_msgs/srv/GetAvailableTransitions"):
-    """Which moves a managed node can make."""
+    """Which transitions a managed node can make."""
 
     class Request(Message):
         """The request of GetAvailableTransitions."""
 
     class Response(Message):
-        """The moves."""
+        """The transitions."""
 
         available_transitions: Annotated[
             list[TransitionDescription], Sequence[TransitionDescription]

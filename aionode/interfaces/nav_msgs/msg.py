@@ -27,7 +27,7 @@ class Path(Message, typename="nav_msgs/msg/Path"):
 
 
 class MapMetaData(Message, typename="nav_msgs/msg/MapMetaData"):
-    """What there is to know of a map besides its cells.
+    """The properties of a map other than its cells.
 
     Attributes:
         map_load_time: When it was loaded.

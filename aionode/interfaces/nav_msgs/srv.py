@@ -25,23 +25,23 @@ class GetMap(ServiceType, typename="nav_msgs/srv/GetMap"):
 
 
 class GetPlan(ServiceType, typename="nav_msgs/srv/GetPlan"):
-    """Ask for a way to a goal."""
+    """Ask for a path to a goal."""
 
     class Request(Message):
-        """From where and to where; `tolerance` is how far off the goal is good enough, in m."""
+        """From where and to where; `tolerance` is how far from the goal is close enough, in m."""
 
         start: PoseStamped = DEFAULT
         goal: PoseStamped = DEFAULT
         tolerance: float32 = 0.0
 
     class Response(Message):
-        """The way, empty if there is none."""
+        """The path, empty if there is none."""
 
         plan: Path = DEFAULT
 
 
 class LoadMap(ServiceType, typename="nav_msgs/srv/LoadMap"):
-    """Have a map loaded."""
+    """Load a map."""
 
     class Request(Message):
         """Where the map is: a path or a URL."""
@@ -49,7 +49,7 @@ class LoadMap(ServiceType, typename="nav_msgs/srv/LoadMap"):
         map_url: str = ""
 
     class Response(Message):
-        """The map, and how loading went: one of the constants."""
+        """The map, and the outcome of loading: one of the constants."""
 
         RESULT_SUCCESS: ClassVar[uint8] = 0
         RESULT_MAP_DOES_NOT_EXIST: ClassVar[uint8] = 1
@@ -62,7 +62,7 @@ class LoadMap(ServiceType, typename="nav_msgs/srv/LoadMap"):
 
 
 class SetMap(ServiceType, typename="nav_msgs/srv/SetMap"):
-    """Give a map and the robot's place in it."""
+    """Set the map and the robot's pose in it."""
 
     class Request(Message):
         """The map, and where in it the robot is."""
@@ -71,6 +71,6 @@ class SetMap(ServiceType, typename="nav_msgs/srv/SetMap"):
         initial_pose: PoseWithCovarianceStamped = DEFAULT
 
     class Response(Message):
-        """Whether both were taken."""
+        """Whether both were accepted."""
 
         success: bool = False

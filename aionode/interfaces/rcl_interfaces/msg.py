@@ -67,7 +67,7 @@ class FloatingPointRange(Message, typename="rcl_interfaces/msg/FloatingPointRang
     Attributes:
         from_value: The smallest.
         to_value: The largest, which always fits.
-        step: From the smallest in steps of this size; 0 means any value between.
+        step: The distance between values, counted from the smallest; 0 means any value in between.
     """
 
     from_value: float64 = 0.0
@@ -81,7 +81,7 @@ class IntegerRange(Message, typename="rcl_interfaces/msg/IntegerRange"):
     Attributes:
         from_value: The smallest.
         to_value: The largest, which always fits.
-        step: From the smallest in steps of this size; 0 means any value between.
+        step: The distance between values, counted from the smallest; 0 means any value in between.
     """
 
     from_value: int64 = 0
@@ -102,7 +102,7 @@ class Log(Message, typename="rcl_interfaces/msg/Log"):
     Attributes:
         stamp: When it was written.
         level: Severity; the constants are the usual ones.
-        name: The logger, as a rule the node.
+        name: The logger, usually that of the node.
         msg: The text.
         file: Source file of the call.
         function: Function of the call.
@@ -125,7 +125,7 @@ class Log(Message, typename="rcl_interfaces/msg/Log"):
 
 
 class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
-    """A logger and the severity from which it writes; levels as in Log."""
+    """A logger and the severity from which it logs; levels as in Log."""
 
     LOG_LEVEL_UNKNOWN: ClassVar[uint8] = 0
     LOG_LEVEL_DEBUG: ClassVar[uint8] = 10
@@ -139,7 +139,7 @@ class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
 
 
 class ParameterDescriptor(Message, typename="rcl_interfaces/msg/ParameterDescriptor"):
-    """What a node says of one of its parameters.
+    """A node's description of one of its parameters.
 
     Attributes:
         name: Its name.
@@ -175,7 +175,7 @@ class ParameterEvent(Message, typename="rcl_interfaces/msg/ParameterEvent"):
 
 
 class ParameterEventDescriptors(Message, typename="rcl_interfaces/msg/ParameterEventDescriptors"):
-    """Which parameters of a node are described anew, otherwise, or no longer."""
+    """Which descriptors of a node's parameters are new, changed or gone."""
 
     new_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = DEFAULT
     changed_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = (

@@ -29,7 +29,7 @@ __all__ = [
 
 
 class DescribeParameters(ServiceType, typename="rcl_interfaces/srv/DescribeParameters"):
-    """What a node says of its parameters."""
+    """A node's descriptions of its parameters."""
 
     class Request(Message):
         """Names of parameters."""
@@ -92,7 +92,7 @@ class ListParameters(ServiceType, typename="rcl_interfaces/srv/ListParameters"):
 
         Attributes:
             prefixes: List those that begin with one of these; all names if there are none.
-            depth: Of at most so many parts between dots; 0 means any number.
+            depth: The most parts between dots that they may have; 0 means any number.
         """
 
         DEPTH_RECURSIVE: ClassVar[uint64] = 0
@@ -115,7 +115,7 @@ class SetLoggerLevels(ServiceType, typename="rcl_interfaces/srv/SetLoggerLevels"
         levels: Annotated[list[LoggerLevel], Sequence[LoggerLevel]] = DEFAULT
 
     class Response(Message):
-        """How it went for each, in order."""
+        """The outcome for each, in order."""
 
         results: Annotated[list[SetLoggerLevelsResult], Sequence[SetLoggerLevelsResult]] = DEFAULT
 
@@ -129,7 +129,7 @@ class SetParameters(ServiceType, typename="rcl_interfaces/srv/SetParameters"):
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """How it went for each, in order."""
+        """The outcome for each, in order."""
 
         results: Annotated[list[SetParametersResult], Sequence[SetParametersResult]] = DEFAULT
 
@@ -143,6 +143,6 @@ class SetParametersAtomically(ServiceType, typename="rcl_interfaces/srv/SetParam
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """How it went."""
+        """The outcome."""
 
         result: SetParametersResult = DEFAULT

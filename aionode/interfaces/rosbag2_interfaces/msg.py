@@ -26,7 +26,7 @@ class MessagesLostEventTopicStat(
 
 
 class MessagesLostEvent(Message, typename="rosbag2_interfaces/msg/MessagesLostEvent"):
-    """A recorder has lost messages, topic by topic."""
+    """A recorder has lost messages; the losses by topic."""
 
     node_name: str = ""
     messages_lost_statistics: Annotated[

@@ -48,7 +48,7 @@ class GetRate(ServiceType, typename="rosbag2_interfaces/srv/GetRate"):
         """The request of GetRate."""
 
     class Response(Message):
-        """1 is as fast as it was recorded."""
+        """1 is the speed of the recording."""
 
         rate: float64 = 0.0
 
@@ -164,7 +164,7 @@ class SetRate(ServiceType, typename="rosbag2_interfaces/srv/SetRate"):
     """Set how fast a player plays."""
 
     class Request(Message):
-        """1 is as fast as it was recorded; it has to be more than 0."""
+        """1 is the speed of the recording; it has to be more than 0."""
 
         rate: float64 = 0.0
 
@@ -220,7 +220,7 @@ class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
 
 
 class StopDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StopDiscovery"):
-    """Have a recorder look for new topics no more."""
+    """Have a recorder stop looking for new topics."""
 
     class Request(Message):
         """The request of StopDiscovery."""

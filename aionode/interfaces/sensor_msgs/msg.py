@@ -64,7 +64,7 @@ __all__ = [
 
 
 class JointState(Message, typename="sensor_msgs/msg/JointState"):
-    """Where the joints of a robot are. The lists go together by index; one may be empty.
+    """Where the joints of a robot are. The lists correspond by index; each may be empty.
 
     Attributes:
         header: When it was measured.
@@ -180,7 +180,7 @@ class PointField(Message, typename="sensor_msgs/msg/PointField"):
 
 
 class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
-    """Points in space with any values each, packed as the sensor sends them.
+    """Points in space, each with any values, packed as the sensor sends them.
 
     Attributes:
         header: When they were measured, and their frame.
@@ -227,8 +227,8 @@ class CameraInfo(Message, typename="sensor_msgs/msg/CameraInfo"):
         k: Intrinsic matrix, 3 by 3 row by row; focal lengths and center in pixels.
         r: Rotation that makes the images of a stereo pair parallel, 3 by 3.
         p: Projection of a point to the rectified image, 3 by 4, in pixels.
-        binning_x: Pixels put together along x; 0 is as 1.
-        binning_y: Pixels put together along y; 0 is as 1.
+        binning_x: Pixels combined along x; 0 means 1.
+        binning_y: Pixels combined along y; 0 means 1.
         roi: The part of the image that is sent; all zeros mean the whole.
     """
 
@@ -331,7 +331,7 @@ class Joy(Message, typename="sensor_msgs/msg/Joy"):
 
 
 class JoyFeedback(Message, typename="sensor_msgs/msg/JoyFeedback"):
-    """What a joystick shall let its user feel; `intensity` from 0 to 1, or in Hz for a buzzer."""
+    """What a joystick should let its user feel; `intensity` from 0 to 1, or in Hz for a buzzer."""
 
     TYPE_LED: ClassVar[uint8] = 0
     TYPE_RUMBLE: ClassVar[uint8] = 1
@@ -364,8 +364,8 @@ class LaserScan(Message, typename="sensor_msgs/msg/LaserScan"):
         angle_increment: Angle from one ray to the next, in rad.
         time_increment: Time from one ray to the next, in s.
         scan_time: Time from one scan to the next, in s.
-        range_min: Shorter ranges are no measurement, in m.
-        range_max: Longer ranges are no measurement, in m.
+        range_min: Shorter ranges are not valid, in m.
+        range_max: Longer ranges are not valid, in m.
         ranges: Distance along each ray, in m; infinity or NaN where there is none.
         intensities: Strength of each echo, in the device's own unit; may be empty.
     """
@@ -400,8 +400,8 @@ class MultiEchoLaserScan(Message, typename="sensor_msgs/msg/MultiEchoLaserScan")
         angle_increment: Angle from one ray to the next, in rad.
         time_increment: Time from one ray to the next, in s.
         scan_time: Time from one scan to the next, in s.
-        range_min: Shorter ranges are no measurement, in m.
-        range_max: Longer ranges are no measurement, in m.
+        range_min: Shorter ranges are not valid, in m.
+        range_max: Longer ranges are not valid, in m.
         ranges: Distances along each ray, in m.
         intensities: Strength of each echo, in the device's own unit; may be empty.
     """
@@ -464,7 +464,7 @@ class NavSatFix(Message, typename="sensor_msgs/msg/NavSatFix"):
 
 
 class PointCloud(Message, typename="sensor_msgs/msg/PointCloud"):
-    """Points in space, in m, with further values each; new code has PointCloud2."""
+    """Points in space, in m, with further values each; new code uses PointCloud2."""
 
     header: Header = DEFAULT
     points: Annotated[list[Point32], Sequence[Point32]] = DEFAULT
@@ -478,9 +478,10 @@ class Range(Message, typename="sensor_msgs/msg/Range"):
         header: When it was measured, and the frame whose x axis points forward.
         radiation_type: One of the constants.
         field_of_view: Angle of the cone in which things are seen, in rad.
-        min_range: Shorter ranges are no measurement, in m.
-        max_range: Longer ranges are no measurement, in m.
-        range: The distance, in m; plus or minus infinity is nothing seen, or something too close.
+        min_range: Shorter ranges are not valid, in m.
+        max_range: Longer ranges are not valid, in m.
+        range: The distance, in m; plus or minus infinity if nothing was seen, or something too
+            close.
         variance: In m², 0 if unknown. ROS 2 Humble does not have this field.
     """
 

@@ -10,7 +10,7 @@ __all__ = ["SetCameraInfo"]
 
 
 class SetCameraInfo(ServiceType, typename="sensor_msgs/srv/SetCameraInfo"):
-    """Have a camera keep its calibration."""
+    """Have a camera store its calibration."""
 
     class Request(Message):
         """The calibration."""
@@ -18,7 +18,7 @@ class SetCameraInfo(ServiceType, typename="sensor_msgs/srv/SetCameraInfo"):
         camera_info: CameraInfo = DEFAULT
 
     class Response(Message):
-        """Whether it was kept, or why not."""
+        """Whether it was stored, or why not."""
 
         success: bool = False
         status_message: str = ""

@@ -9,13 +9,13 @@ __all__ = ["Empty", "SetBool", "Trigger"]
 
 
 class Empty(ServiceType, typename="std_srvs/srv/Empty"):
-    """Have something done, with nothing to say before or after."""
+    """Have something done, without arguments or a result."""
 
     class Request(Message):
         """Nothing: the call is the request."""
 
     class Response(Message):
-        """Nothing: that it came says that it was done."""
+        """Nothing: its arrival means that it was done."""
 
 
 class SetBool(ServiceType, typename="std_srvs/srv/SetBool"):
@@ -27,7 +27,7 @@ class SetBool(ServiceType, typename="std_srvs/srv/SetBool"):
         data: bool = False
 
     class Response(Message):
-        """Whether that worked, and a word on why not."""
+        """Whether that worked, and if not, why."""
 
         success: bool = False
         message: str = ""
@@ -40,7 +40,7 @@ class Trigger(ServiceType, typename="std_srvs/srv/Trigger"):
         """Nothing: the call is the request."""
 
     class Response(Message):
-        """Whether it was done, and a word on how."""
+        """Whether it was done, and a text about it."""
 
         success: bool = False
         message: str = ""

@@ -19,8 +19,8 @@ class DisparityImage(Message, typename="stereo_msgs/msg/DisparityImage"):
         f: Focal length, in pixels.
         t: Distance between the cameras, in m.
         valid_window: The part of the image in which shifts can be found.
-        min_disparity: Smallest shift looked for, in pixels.
-        max_disparity: Largest shift looked for, in pixels.
+        min_disparity: Smallest shift searched for, in pixels.
+        max_disparity: Largest shift searched for, in pixels.
         delta_d: Smallest step between shifts, in pixels.
     """
 

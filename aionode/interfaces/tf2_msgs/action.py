@@ -24,7 +24,7 @@ class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
             timeout: How long to wait for it.
             target_time: When to look at the target frame; only if `advanced`.
             fixed_frame: The frame that stands still between both times; only if `advanced`.
-            advanced: Whether the two frames are looked at at different times.
+            advanced: Whether the two frames are looked up at different times.
         """
 
         target_frame: str = ""
@@ -42,4 +42,4 @@ class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
         error: TF2Error = DEFAULT
 
     class Feedback(Message):
-        """Nothing: there is none."""
+        """Nothing: there is no feedback."""

@@ -19,7 +19,7 @@ __all__ = [
 
 
 class JointTrajectoryPoint(Message, typename="trajectory_msgs/msg/JointTrajectoryPoint"):
-    """Where joints shall be at one time. The lists go together by index; one may be empty.
+    """Where joints should be at one time. The lists correspond by index; each may be empty.
 
     Attributes:
         positions: In rad, or in m for a joint that slides.
@@ -37,7 +37,7 @@ class JointTrajectoryPoint(Message, typename="trajectory_msgs/msg/JointTrajector
 
 
 class JointTrajectory(Message, typename="trajectory_msgs/msg/JointTrajectory"):
-    """How joints shall move: points in time for the joints of `joint_names`."""
+    """How joints should move: points in time for the joints of `joint_names`."""
 
     header: Header = DEFAULT
     joint_names: Annotated[list[str], Sequence[str]] = DEFAULT
@@ -47,7 +47,7 @@ class JointTrajectory(Message, typename="trajectory_msgs/msg/JointTrajectory"):
 class MultiDOFJointTrajectoryPoint(
     Message, typename="trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
 ):
-    """Where such joints shall be at one time; in m, m/s, m/s² and rad."""
+    """Where such joints should be at one time; in m, m/s, m/s² and rad."""
 
     transforms: Annotated[list[Transform], Sequence[Transform]] = DEFAULT
     velocities: Annotated[list[Twist], Sequence[Twist]] = DEFAULT
@@ -56,7 +56,7 @@ class MultiDOFJointTrajectoryPoint(
 
 
 class MultiDOFJointTrajectory(Message, typename="trajectory_msgs/msg/MultiDOFJointTrajectory"):
-    """How joints that move along or about several axes shall move."""
+    """How joints that move along or about several axes should move."""
 
     header: Header = DEFAULT
     joint_names: Annotated[list[str], Sequence[str]] = DEFAULT

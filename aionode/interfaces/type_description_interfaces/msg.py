@@ -141,7 +141,7 @@ class IndividualTypeDescription(
 
 
 class KeyValue(Message, typename="type_description_interfaces/msg/KeyValue"):
-    """A value with what it is called, both as text."""
+    """A name and a value, both as text."""
 
     key: str = ""
     value: str = ""

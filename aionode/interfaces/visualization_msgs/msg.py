@@ -86,14 +86,14 @@ class Marker(Message, typename="visualization_msgs/msg/Marker"):
 
     Attributes:
         header: Time, and the frame of `pose`.
-        ns: With `id` it tells this marker from others.
+        ns: With `id` it distinguishes this marker from others.
         id: A marker with the same `ns` and `id` replaces it.
         type: What to draw, one of the constants.
         action: Draw it, or remove it or all: one of the constants.
         pose: Where it is, in m.
         scale: Its size along its axes, in m; meaning depends on `type`.
-        color: With opacity: `a` of 0 cannot be seen.
-        lifetime: How long to show it; 0 is for ever.
+        color: With opacity; an `a` of 0 is invisible.
+        lifetime: How long to show it; 0 means forever.
         frame_locked: Whether it moves along with its frame.
         points: For lines, lists and triangles, in m.
         colors: One for each of `points`, or none.
@@ -210,7 +210,7 @@ class InteractiveMarkerFeedback(
 
 
 class InteractiveMarkerInit(Message, typename="visualization_msgs/msg/InteractiveMarkerInit"):
-    """All interactive markers of a server, for viewers that come later."""
+    """All interactive markers of a server, for viewers that join later."""
 
     server_id: str = ""
     seq_num: uint64 = 0
