@@ -23,7 +23,7 @@ __all__ = [
 
 
 MAX_REASON = 1000
-"""Most characters of the reason of a rejection: servers keep some of them."""
+"""Maximum characters in the reason of a rejection: servers keep a number of reasons."""
 
 
 class ServiceError(AionodeError, RuntimeError):
@@ -118,7 +118,7 @@ class GoalRejected(AionodeError, RuntimeError):  # an answer, as GoalResponse.RE
     `GoalRejectedError`, and the log of the server has it.
 
     Attributes:
-        reason: Why, in words for the caller; the first 1000 characters.
+        reason: The reason, in words for the caller; its first 1000 characters.
 
     Raises:
         TypeError: `reason` is not a str.
@@ -135,8 +135,8 @@ class GoalRejectedError(GoalError):
     """The action server rejected a goal.
 
     Attributes:
-        reason: Why, as its `goal_callback` has said by `GoalRejected`; empty if it has not, or if
-            the server does not send it, as those of ROS.
+        reason: The reason that its `goal_callback` gave by `GoalRejected`; empty if it gave none,
+            or if the server does not send it, like those of ROS.
     """
 
     def __init__(self, action: str, goal_id: str, reason: str = "") -> None:

@@ -43,7 +43,7 @@ class PolicyFileError(AionodeError, ValueError):
 
 
 class ToolError(AionodeError, RuntimeError):
-    """A tool of an assistant cannot do what it was called for.
+    """A tool of an assistant cannot do what it was called to do.
 
     Attributes:
         subject: What it was called with.

@@ -1,4 +1,4 @@
-"""Errors of contracts, and of the observations and data sets made by them."""
+"""Errors of contracts, and of the observations and data sets made with them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ContractError(AionodeError, ValueError):
 
 
 class DatasetError(AionodeError, ValueError):
-    """A data set cannot be made of a recording, or is not what its format demands.
+    """A data set cannot be made from a recording, or is not what its format demands.
 
     Attributes:
         path: The bag, the data set or the file in it.

@@ -13,10 +13,10 @@ __all__ = ["PolicyTooSlowError", "StaleError"]
 
 
 class StaleError(AionodeError, TimeoutError):
-    """Something that a policy should see is older than its contract allows, or was never heard.
+    """Something that a policy should see is older than its contract allows, or never arrived.
 
     Attributes:
-        ages: The age of each topic that is too old, in seconds; None for one that was never heard.
+        ages: The age of each topic that is too old, in seconds; None for one never received.
     """
 
     def __init__(self, ages: Mapping[str, float | None], limits: Mapping[str, float]) -> None:
@@ -24,7 +24,7 @@ class StaleError(AionodeError, TimeoutError):
         shown = "; ".join(
             f"{topic} was never heard"
             if age is None
-            else f"{topic} is {age:.3f} s old, of at most {limits[topic]:g} s"
+            else f"{topic} is {age:.3f} s old; at most {limits[topic]:g} s are allowed"
             for topic, age in ages.items()
         )
         super().__init__(

@@ -89,9 +89,9 @@ def offered(
 
     Args:
         name: The name that was looked up.
-        what: What the known names are of.
+        what: What the known names belong to, as text.
         known: The names of what is there.
-        supplied: The names of what aionode itself has, which may be close as well.
+        supplied: The names that aionode itself supplies, which may be close as well.
     """
     import difflib  # needed only for errors
 

@@ -76,7 +76,7 @@ class QueueFullError(AionodeError, RuntimeError):
 
 
 class LeaseExpiredError(AionodeError, TimeoutError):
-    """A command lease has ended: its stop was sent, and no more commands are.
+    """A command lease has ended: its stop was sent, and no more commands are accepted.
 
     Attributes:
         topic: The topic of the commands.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Moving", "StopMotion", "Stopped", "Stopping", "cancelled"]
 
 ENDING_SEC: Final = 1.0
-"""The longest time for motion to end that was stopped, in seconds."""
+"""The longest time that stopped motion may take to end, in seconds."""
 
 ANSWER_SEC: Final = 2 * ENDING_SEC
 """How long to wait for another gateway, in seconds."""

@@ -369,8 +369,8 @@ def run_in_processes(missing: list[Job], jobs: int, tell: Callable[[int], None])
         except BrokenProcessPool as error:
             raise DatasetError(
                 missing[0].folder,
-                "a process of the export ended early: it was killed, as for lack of memory, or the "
-                "program that calls export() does so without `if __name__ == '__main__':`",
+                "a process of the export ended early: it was killed, perhaps for lack of memory, "
+                "or the program that calls export() does so without `if __name__ == '__main__':`",
                 "start it again with one job at a time; what is done is kept",
             ) from error
         finally:

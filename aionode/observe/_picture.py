@@ -81,7 +81,7 @@ def picture_of(
     Args:
         graph: The graph.
         names: Only these nodes, topics, services and actions, and their neighbours; a name that
-            ends in a slash stands for all below it. By default all.
+            ends in a slash stands for everything below it. By default all.
         everything: Whether infrastructure and hidden nodes are drawn as well.
         hz: Measured rates by node, kind of endpoint and name.
     """

@@ -143,7 +143,7 @@ def angles_of(matrix: Any) -> tuple[float, float, float]:
 def given_transform(
     numbers: Mapping[str, float],
 ) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
-    """Return the translation and the quaternion that options of static_transform_publisher say.
+    """Return the translation and the quaternion given by options of static_transform_publisher.
 
     Args:
         numbers: ``x``, ``y`` and ``z`` in metres; and ``qx``, ``qy``, ``qz`` and ``qw``, or

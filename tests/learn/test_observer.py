@@ -217,7 +217,7 @@ async def test_what_is_too_old_at_the_reference_is_named(robot: Robot) -> None:
         await robot.move("arm", 800, 1.0)
         await robot.move("gripper", 800, 1.0)
         await robot.show(1000)
-        with pytest.raises(StaleError, match=r"/arm is 0.200 s old, of at most 0.1 s") as raised:
+        with pytest.raises(StaleError, match=r"/arm is 0.200 s old; at most 0.1 s are") as raised:
             observations.newest()
         assert raised.value.ages == {"/arm": pytest.approx(0.2)}
 

@@ -70,7 +70,7 @@ async def read_resource(
 
     Raises:
         ToolError: there is no resource with that address, or no message came.
-        RefusedError: the policy does not allow to read it.
+        RefusedError: the policy does not allow reading it.
         InterfaceNotFoundError: nobody knows the type.
     """
     if uri == ABOUT:

@@ -149,7 +149,7 @@ async def services(session: Session, _: Args) -> dict[str, Any]:
 
 @service("offered")
 async def offered(session: Session, _: Args) -> dict[str, Any]:
-    """Return for pages everything without infrastructure; rosapi itself has no such service."""
+    """Return everything except infrastructure, for pages; rosapi itself has no such service."""
     found = session.graph.offered()
     return {
         "nodes": found.nodes,

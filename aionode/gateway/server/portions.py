@@ -98,7 +98,7 @@ class Portions:
             self._transport.resume_reading()
 
     def _wait_if_owed(self) -> bool:
-        """Pass nothing more on for the time that is owed, and return whether any is."""
+        """Pass on nothing more for the time that is owed, and return whether any is."""
         if not self.owed_sec or self._is_closed:
             return False
         self._transport.pause_reading()

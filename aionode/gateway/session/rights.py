@@ -65,7 +65,7 @@ class Rights:
 
         Args:
             error: Why.
-            op: The op, with what it is about as far as the error does not say it.
+            op: The op, with its subject unless the error names that.
         """
         subject, reason = "", str(error) or "no answer in time"
         if isinstance(error, RefusedError):
