@@ -22,11 +22,11 @@ __all__ = ["ParameterBuilder"]
 class ParameterBuilder:
     """Parameters from the files of a package, added one after another.
 
-    A package that is missing, and may be, has a stand-in: what is built of it is left out.
+    A missing package has a stand-in if it may be missing: what is built from it is left out.
     """
 
     def __new__(cls, package_name: str, *_: Any, **__: Any) -> Any:
-        """Return a builder, or what stands for it."""
+        """Return a builder, or its stand-in."""
         missing = package_of_stand_in(get_path(package_name, ""))
         return super().__new__(cls) if missing is None else StandIn(missing)
 

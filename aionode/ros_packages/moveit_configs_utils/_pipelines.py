@@ -1,4 +1,4 @@
-"""How MoveIt's planners are set up where a robot's package does not say so."""
+"""How MoveIt's planners are set up unless a robot's package says otherwise."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def add_debuggable_node(
     extra_debug_args: list[str] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node to a description, and the same under gdb, one of which a configuration chooses."""
+    """Add a node to a description, and the same under gdb; a configuration chooses one of them."""
     wanted = LaunchConfiguration(condition_name)
     node = {"package": package, "executable": executable, **kwargs}
     ld.add_action(Node(condition=UnlessCondition(wanted), **node))

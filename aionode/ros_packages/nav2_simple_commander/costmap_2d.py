@@ -82,7 +82,7 @@ class PyCostmap2D:
         return self.origin_x + x, self.origin_y + y
 
     def worldToMapValidated(self, wx: float, wy: float) -> tuple[int, int] | tuple[None, None]:
-        """Return the cell of a place in metres; two None outside of the map."""
+        """Return the cell of a place in metres; (None, None) outside of the map."""
         if wx < self.origin_x or wy < self.origin_y:
             return None, None
         mx = int((wx - self.origin_x) // self.resolution)

@@ -72,7 +72,7 @@ class FootprintCollisionChecker:
         return greatest
 
     def worldToMapValidated(self, wx: float, wy: float) -> tuple[int, int] | tuple[None, None]:
-        """Return the cell of a place in metres; None twice outside the map."""
+        """Return the cell of a place in metres; (None, None) outside of the map."""
         return self.known().worldToMapValidated(wx, wy)
 
     def pointCost(self, x: int, y: int) -> Any:

@@ -87,5 +87,5 @@ class LineIterator:
         return math.hypot(self.x1_ - self.x0_, self.y1_ - self.y0_)
 
     def clamp(self, n: float, min_n: float, max_n: float) -> float:
-        """Return a number, or the limit that it is beyond."""
+        """Return a number, or the limit that it exceeds."""
         return min(max(n, min_n), max_n)

@@ -130,10 +130,10 @@ class BasicNavigator(Node):
         self.initial_pose = initial_pose
         self._setInitialPose()
 
-    # Tasks: each returns whether Nav2 took it
+    # Tasks: each returns whether Nav2 accepted it
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Drive through several poses without a stop."""
+        """Drive through several poses without stopping."""
         goal = action.NavigateThroughPoses.Goal(poses=poses, behavior_tree=behavior_tree)
         self.info(f"Navigating with {len(poses)} goals....")
         return self._begin("nav_through_poses_client", goal, f"Goal with {len(poses)} poses")
@@ -146,7 +146,7 @@ class BasicNavigator(Node):
         return self._begin("nav_to_pose_client", goal, f"Goal to {where}")
 
     def followWaypoints(self, poses: Any) -> bool:
-        """Drive to one pose after another, and do at each what its task is."""
+        """Drive to one pose after another, and carry out the task of each."""
         self.info(f"Following {len(poses)} goals....")
         goal = action.FollowWaypoints.Goal(poses=poses)
         what = f"Following {len(poses)} waypoints request"
@@ -182,7 +182,7 @@ class BasicNavigator(Node):
     def driveOnHeading(
         self, dist: float = 0.15, speed: float = 0.025, time_allowance: int = 10
     ) -> bool:
-        """Drive straight on."""
+        """Drive straight ahead."""
         self.info(f"Drive {float(dist)} m on heading at {speed} m/s....")
         goal = action.DriveOnHeading.Goal(
             target=Point(x=float(dist)),
@@ -327,7 +327,7 @@ class BasicNavigator(Node):
         self._ask("clear_costmap_global_srv", srv.ClearEntireCostmap.Request())
 
     def clearCostmapExceptRegion(self, reset_distance: float) -> None:
-        """Clear the local costmap but for what is near the robot."""
+        """Clear the local costmap except near the robot."""
         request = srv.ClearCostmapExceptRegion.Request(reset_distance=reset_distance)
         self._ask("clear_costmap_except_region_srv", request)
 
@@ -444,7 +444,7 @@ class BasicNavigator(Node):
             self.info("Waiting for amcl_pose to be received")
             rclpy.spin_once(self, timeout_sec=ASK_SEC)
 
-    def _amclPoseCallback(self, msg: Any) -> None:  # that it comes is what counts
+    def _amclPoseCallback(self, msg: Any) -> None:  # only its arrival counts
         """Note that the localization knows where the robot is."""
         self.initial_pose_received = True
 

@@ -234,11 +234,11 @@ class Exchange:
             Blackboard.activity_stream.clear()
 
     def register_activity_stream_client(self) -> None:
-        """Record activities, for one more client that shows them."""
+        """Record activities for one more client that shows them."""
         self.activity_stream_clients += 1
 
     def unregister_activity_stream_client(self) -> None:
-        """Record activities for one client less."""
+        """Record activities for one client fewer."""
         self.activity_stream_clients -= 1
 
     def _close_view(self, view: BlackboardView) -> None:

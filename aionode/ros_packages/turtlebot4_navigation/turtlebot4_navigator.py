@@ -24,7 +24,7 @@ __all__ = ["TurtleBot4Directions", "TurtleBot4Navigator"]
 
 POLL_SEC: Final = 0.1
 EACH: Final = 5
-"""The number of feedback messages of which one is printed."""
+"""One in this many feedback messages is printed."""
 LONGEST: Final = Duration(seconds=600.0)
 """The time after which driving to a pose is canceled."""
 

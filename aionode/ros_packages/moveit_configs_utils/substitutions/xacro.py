@@ -19,7 +19,7 @@ __all__ = ["Xacro"]
 
 
 class Xacro(Substitution):
-    """The XML that xacro makes of a file, with arguments that are known at launch only."""
+    """The XML that xacro makes of a file, with arguments that are known only at launch."""
 
     def __init__(
         self,

@@ -195,7 +195,7 @@ class ParseMultiRobotPose(Substitution):
 
 
 def poses_in(text: str) -> dict[str, dict[str, Any]]:
-    """Return the poses in a text; what a pose does not say is 0."""
+    """Return the poses in a text; what a pose leaves out is 0."""
     poses: dict[str, dict[str, Any]] = {}
     for entry in text.split(";"):
         name, equals, written = entry.partition("=")
