@@ -510,3 +510,34 @@ def test_a_destroyed_server_is_not_found(node: Node) -> None:
 
     assert list(node.waitables) == [client]
     assert not client.wait_for_server(0.0)
+
+
+def test_a_blocked_thread_is_told_of_the_shutdown(context: rclpy.Context, node: Node) -> None:
+    """It would wait forever: nothing arrives any more."""
+    ActionServer(node, Fibonacci, "fibonacci", lambda _: Fibonacci.Result())
+    client: Any = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(PATIENCE_S)
+    raised: list[RCLError] = []
+    is_sent = threading.Event()
+    send = client.send_goal_async
+
+    def send_and_note(*args: Any) -> Any:
+        is_sent.set()
+        return send(*args)
+
+    client.send_goal_async = send_and_note
+
+    def work() -> None:
+        try:
+            client.send_goal(Fibonacci.Goal())  # nobody spins
+        except RCLError as error:
+            raised.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    assert is_sent.wait(PATIENCE_S)
+    assert context.handle is not None
+    context.handle.interrupt()
+    thread.join(PATIENCE_S)
+
+    assert [str(error) for error in raised] == ["no answer of fibonacci: the context is shut down"]

@@ -15,6 +15,7 @@ import pytest
 import rclpy
 from aionode.clock import MachineTime
 from aionode.interfaces.std_msgs.msg import Int32
+from aionode.interfaces.std_srvs.srv import Trigger
 from tests.support import fork_server
 from tests.support.peers import isolated_environment
 
@@ -30,9 +31,11 @@ PROGRAM = """
 import sys, time
 import rclpy
 from std_msgs.msg import Int32
+from std_srvs.srv import Trigger
 
 rclpy.init(args=[])
 node = rclpy.create_node("mover")
+stops = node.create_client(Trigger, "stop")
 commands = node.create_publisher(Int32, "commands", 10)
 move = lambda: commands.publish(Int32(data=1))
 while not commands.get_subscription_count():
@@ -57,9 +60,25 @@ try:
                 time.sleep(0.01)
         threading.Thread(target=work, daemon=True).start()
         rclpy.spin(node)
+    elif sys.argv[1] == "rate":
+        import threading
+        threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+        rate = node.create_rate(0.001)  # its tick does not end the sleep
+        while rclpy.ok():
+            move()
+            rate.sleep()
+    elif sys.argv[1] == "call":
+        node.create_service(Trigger, "unanswered", None)  # nobody spins
+        unanswered = node.create_client(Trigger, "unanswered")
+        unanswered.wait_for_service()
+        move()
+        unanswered.call(Trigger.Request())
 finally:
     time.sleep(0.1)
-    commands.publish(Int32(data=0))
+    if sys.argv[2] == "call":
+        stops.call(Trigger.Request())
+    else:
+        commands.publish(Int32(data=0))
     if sys.argv[2] == "shutdown":
         node.destroy_node()
         rclpy.try_shutdown()
@@ -79,6 +98,12 @@ class Wheels:
         self.node.create_subscription(
             Int32, "commands", lambda msg: self.heard.append(msg.data), 1000
         )
+        self.node.create_service(Trigger, "stop", self.stop)
+
+    def stop(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Stop at the request of a program."""
+        self.heard.append(0)
+        return response
 
     def listen_until_stopped(self) -> None:
         """Listen until a stop arrives, and for half a second after it."""
@@ -126,6 +151,8 @@ def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[str]:
         pytest.param("spin", signal.SIGTERM, marks=pytest.mark.stress),
         ("loop", signal.SIGTERM),
         ("thread", signal.SIGTERM),
+        ("rate", signal.SIGTERM),
+        ("call", signal.SIGTERM),
         ("spin", signal.SIGHUP),
     ],
 )
@@ -141,6 +168,18 @@ def test_the_stop_of_a_program_that_a_signal_ends_gets_out(
 
     assert wheels.heard.count(0) == 1
     assert wheels.heard[-1] == 0
+
+
+def test_a_program_that_a_signal_ends_may_call_the_service_that_stops(
+    wheels: Wheels, tmp_path: Path
+) -> None:
+    """With rclpy nobody would take the response, and the program would not end."""
+    with start(tmp_path, "spin", "call") as mover:
+        wheels.listen_until_moved()
+        mover.send_signal(signal.SIGTERM)
+        wheels.listen_until_stopped()
+
+    assert wheels.heard.count(0) == 1
 
 
 @pytest.mark.parametrize(

@@ -118,24 +118,41 @@ class ServiceEntity(EndpointEntity[ServiceHandleT]):
             return self._handle.name
 
 
-def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: float | None) -> bool:
+def wait_until(
+    is_ready: Callable[[], object],
+    context: Context,
+    timeout_sec: float | None,
+    wakeup: Wakeup | None = None,
+) -> bool:
     """Block the thread until something is ready; nothing has to spin.
 
     Args:
-        is_ready: Returns whether it is.
+        is_ready: Returns something true if it is.
         context: The context, whose shutdown ends the wait.
         timeout_sec: Maximum time to wait, in seconds; None for no limit.
+        wakeup: Woken when it may be ready; if None, `is_ready` is asked again and again.
 
     Returns:
         Whether it is ready.
     """
     ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
-    wakeup = Wakeup()
-    while not is_ready():
-        left_s = CHECK_S
-        if ends_ns is not None:
-            left_s = min(left_s, (ends_ns - steady_ns()) / 1e9)
-        if left_s <= 0 or not context.ok():
-            return False
-        wakeup.wait(left_s)
-    return True
+    step_s = CHECK_S if wakeup is None else None
+    wakeup = wakeup or Wakeup()
+    signals = [] if context.handle is None else [context.handle.signal]
+    for signal in signals:
+        signal.add(wakeup)
+    try:
+        while not is_ready():
+            left_s = step_s
+            if ends_ns is not None:
+                left_s = (ends_ns - steady_ns()) / 1e9
+                if left_s <= 0:
+                    return False
+                left_s = left_s if step_s is None else min(left_s, step_s)
+            if not context.ok():
+                return False
+            wakeup.wait(left_s)
+        return True
+    finally:
+        for signal in signals:
+            signal.remove(wakeup)

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.engine.causes import take as take_cause
 from rclpy._entities import ServiceEntity, in_use, wait_until
+from rclpy._impl.context import LAST_CALL_S
 from rclpy._impl.destroyable import Wakeup
+from rclpy._impl.errors import RCLError
 from rclpy._impl.services import ClientHandle
 from rclpy._impl.uninterrupted import refuse_to_wait
 from rclpy.task import Future
@@ -81,7 +83,8 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         Raises:
             TypeError: `request` is of another class.
             TimeoutError: no response arrived in time; a later one is dropped.
-            RCLError: a finalizer calls this where it cannot wait.
+            RCLError: the context was shut down meanwhile, perhaps by a signal, or before, and no
+                response arrived within a second; or a finalizer calls this where it cannot wait.
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError
@@ -96,8 +99,15 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         with self._handle:
             with self._lock:
                 sequence = self._handle.send_request(request, take)
-            if not wakeup.wait(timeout_sec):
+            if self.context.ok():
+                has_come = wait_until(lambda: responses, self.context, timeout_sec, wakeup)
+            else:  # a last word, such as the stop of a motor after a signal
+                limit_s = LAST_CALL_S if timeout_sec is None else min(timeout_sec, LAST_CALL_S)
+                has_come = wakeup.wait(limit_s)
+            if not has_come:
                 self._handle.forget(sequence)
+                if not self.context.ok():
+                    raise RCLError(f"no response of {self.srv_name}: the context is shut down")
                 if not responses:
                     raise TimeoutError
             response: ResponseT = self._handle.receive(sequence, responses[0])

@@ -7,7 +7,8 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import ClockType
-from rclpy._entities import HandleOwner, in_use
+from rclpy._entities import HandleOwner, in_use, wait_until
+from rclpy._impl.destroyable import Signal, Wakeup
 from rclpy._impl.timers import TimerHandle
 from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
@@ -140,14 +141,21 @@ class Rate:
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer = timer
+        self._context = context
         self._is_shutdown = False
         self._is_destroyed = False
-        self._event = threading.Event()
+        # Stays until the last sleeper has woken; a tick while nobody sleeps ends the next sleep.
+        self._has_ticked = False
+        self._signal = Signal()
         # Guards the number of sleepers; a signal handler may sleep, too.
         self._lock = threading.RLock()
         self._num_sleepers = 0
-        self._timer.callback = self._event.set
+        self._timer.callback = self._tick
         context.on_shutdown(self._on_shutdown)
+
+    def _tick(self) -> None:
+        self._has_ticked = True
+        self._signal.notify()
 
     def _on_shutdown(self) -> None:
         self._is_shutdown = True
@@ -156,13 +164,13 @@ class Rate:
     def destroy(self) -> None:
         """Wake the sleeping threads. Use `Node.destroy_rate`."""
         self._is_destroyed = True
-        self._event.set()
+        self._tick()
 
     def sleep(self) -> None:
-        """Sleep until the next tick.
+        """Sleep until the next tick, or until a signal shuts the context down.
 
         Raises:
-            ROSInterruptException: the context is shut down.
+            ROSInterruptException: the context is shut down, unless by a signal during this sleep.
             RuntimeError: the rate is destroyed.
             InvalidHandle: its timer is destroyed.
         """
@@ -172,15 +180,20 @@ class Rate:
         if not self._timer.handle.is_valid:
             self.destroy()
             raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
+        if not self._context.ok():
+            raise ROSInterruptException
+        wakeup = Wakeup()
         with self._lock:
             self._num_sleepers += 1
+        self._signal.add(wakeup)
         try:
-            self._event.wait()
+            wait_until(lambda: self._has_ticked, self._context, None, wakeup)
         finally:
+            self._signal.remove(wakeup)
             with self._lock:
                 self._num_sleepers -= 1
                 if self._num_sleepers == 0:
-                    self._event.clear()
+                    self._has_ticked = False
         self._refuse_if_shut_down()
 
     def _refuse_if_shut_down(self) -> None:

@@ -25,12 +25,15 @@ from rclpy._impl.io_thread import IoThread
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["ContextHandle", "contexts_by_id", "living_contexts", "parsed"]
+__all__ = ["LAST_CALL_S", "ContextHandle", "contexts_by_id", "living_contexts", "parsed"]
 
 contexts_by_id: weakref.WeakValueDictionary[int, ContextHandle] = weakref.WeakValueDictionary()
 
 LAST_WORDS_S = 2.0
 """How long a thread may still publish after a signal has shut its context down."""
+
+LAST_CALL_S = 1.0
+"""How long it waits for a response then; it may have to publish, too."""
 
 PROCESS_END_S = 5.0
 """How long a daemon thread waits for the end of the process: `atexit` functions may join it."""

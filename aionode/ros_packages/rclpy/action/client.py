@@ -13,6 +13,7 @@ from aionode.engine.rules.goal import GoalStatus
 from rclpy._entities import wait_until
 from rclpy._impl.actions import ActionClientHandle
 from rclpy._impl.destroyable import Wakeup
+from rclpy._impl.errors import RCLError
 from rclpy.action._entity import ActionEntity
 from rclpy.executors import await_or_execute
 from rclpy.qos import (
@@ -92,28 +93,28 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return self._status
 
     def cancel_goal(self) -> Any:
-        """Ask the server to cancel it; block until it answers, while another thread spins."""
-        return blocked(self.cancel_goal_async())
+        """Ask the server to cancel it; block until it answers, while another thread spins.
+
+        Raises:
+            RCLError: the context was shut down meanwhile.
+        """
+        return self._action_client._blocked(self.cancel_goal_async())
 
     def cancel_goal_async(self) -> Future[Any]:
         """Ask the server to cancel it; return a future for the answer."""
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
-        """Request the goal's result; block until it arrives, while another thread spins."""
-        return blocked(self.get_result_async())
+        """Request the goal's result; block until it arrives, while another thread spins.
+
+        Raises:
+            RCLError: the context was shut down meanwhile.
+        """
+        return self._action_client._blocked(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
         """Request the goal's result; return a future for it."""
         return self._action_client._get_result_async(self)
-
-
-def blocked(future: Future[Any]) -> Any:
-    """Block the thread until a future is done; return its result."""
-    done = Wakeup()
-    future.add_done_callback(lambda _: done.wake())
-    done.wait(None)
-    return future.result()
 
 
 class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, FeedbackT]):
@@ -179,9 +180,22 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
         Raises:
             TypeError: `goal` is of another class.
+            RCLError: the context was shut down meanwhile.
         """
-        handle = blocked(self.send_goal_async(goal, **kwargs))
+        handle = self._blocked(self.send_goal_async(goal, **kwargs))
         return handle.get_result()
+
+    def _blocked(self, future: Future[Any]) -> Any:
+        """Block the thread until a future is done; return its result.
+
+        Raises:
+            RCLError: the context was shut down meanwhile.
+        """
+        done = Wakeup()
+        future.add_done_callback(lambda _: done.wake())
+        if not wait_until(future.done, self._node.context, None, done):
+            raise RCLError(f"no answer of {self._action_name}: the context is shut down")
+        return future.result()
 
     def send_goal_async(
         self,
