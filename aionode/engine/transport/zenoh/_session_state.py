@@ -20,6 +20,7 @@ from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 from aionode.engine.transport.network import GRAPH_BYTES, QUEUE_BYTES
 from aionode.engine.transport.send_thread import SendThread
+from aionode.engine.transport.zenoh._defects.early_connections import waits_for_link
 from aionode.engine.transport.zenoh.connections.connections import Connections
 from aionode.engine.transport.zenoh.connections.handlers import translated
 from aionode.engine.transport.zenoh.connections.sockets import send_progress
@@ -144,7 +145,7 @@ class SessionState:
         self.session: zenoh.Session | None = None
         self.graph: Graph | None = None
         self.waker = LoopWaker() if waker is None else waker
-        self.connections = Connections(self.waker)
+        self.connections = Connections(self.waker, waits_for_link)
         self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds, self.drops)
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}

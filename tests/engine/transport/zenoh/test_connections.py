@@ -6,7 +6,6 @@ import asyncio
 import os
 import sys
 from contextlib import closing
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +15,7 @@ from aionode.clock import perf_ns
 from aionode.engine.context import Context
 from aionode.engine.transport.loop_waker import LoopWaker
 from aionode.engine.transport.network import network_from
+from aionode.engine.transport.zenoh._defects.early_connections import waits_for_link
 from aionode.engine.transport.zenoh.connections import connections as _connections
 from aionode.engine.transport.zenoh.connections.connections import (
     MOMENT_NS,
@@ -25,24 +25,15 @@ from aionode.engine.transport.zenoh.connections.connections import (
     Connections,
 )
 from aionode.engine.transport.zenoh.session.local_sessions import announce
+from tests.support.connections import tell, tell_early
 
 pytestmark = pytest.mark.one_loop
-
-
-def tell(
-    connections: Connections, zid: str, kind: zenoh.WhatAmI = zenoh.WhatAmI.PEER, *, is_made: bool
-) -> None:
-    """Have Zenoh report a connection."""
-    transport = SimpleNamespace(zid=zid, whatami=kind)
-    event_kind = zenoh.SampleKind.PUT if is_made else zenoh.SampleKind.DELETE
-    event: Any = SimpleNamespace(kind=event_kind, transport=transport)
-    connections.take(event)
 
 
 @pytest.fixture
 def connections() -> Connections:
     """Return those of a session that is not open."""
-    return Connections(LoopWaker())
+    return Connections(LoopWaker(), waits_for_link)
 
 
 async def test_a_peer_that_was_lost_and_is_connected_again_has_returned(
@@ -62,6 +53,28 @@ async def test_a_peer_that_was_lost_and_is_connected_again_has_returned(
         (True, True),
     ]
     assert (set(connections.kinds), connections.lost) == ({"b2"}, set())
+
+
+async def test_a_connection_counts_once_its_link_is_reported(connections: Connections) -> None:
+    """Before that, Zenoh answers queries for tokens without asking the peer."""
+    tell_early(connections, "b2", is_made=True)
+    assert not connections.kinds
+    connections.take("b2")
+
+    assert connections.kinds == {"b2": zenoh.WhatAmI.PEER}
+
+
+async def test_a_connection_that_ends_before_its_link_is_reported_never_was(
+    connections: Connections,
+) -> None:
+    """Nobody was told of it, so nothing is lost; the link may be reported afterwards."""
+    told: list[ConnectionChange] = []
+    connections.on_change.append(told.append)
+    tell_early(connections, "b2", is_made=True)
+    tell_early(connections, "b2", is_made=False)
+    connections.take("b2")
+
+    assert (told, connections.kinds, connections.lost) == ([], {}, set())
 
 
 async def test_a_client_that_leaves_is_not_lost(connections: Connections) -> None:

@@ -37,6 +37,7 @@ from aionode.engine.transport.zenoh.connections.config import PROBE_IDS, is_prob
 from aionode.engine.transport.zenoh.connections.sockets import Descriptor, split_locator
 from aionode.engine.transport.zenoh.discovery.graph_watcher import Watcher
 from aionode.graph import Graph, NodeInfo
+from tests.support.connections import tell
 from tests.support.peers import (
     DOMAIN_ID,
     Collector,
@@ -719,11 +720,9 @@ async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterato
             await stack.enter_async_context(context(name))
         await until(lambda: state.acknowledgements.present.issuperset(names))
         state.acknowledgements.present.clear()
-        for kind in (zenoh.SampleKind.DELETE, zenoh.SampleKind.PUT):
+        for is_made in (False, True):
             for name in names:
-                transport = SimpleNamespace(zid=name, whatami=zenoh.WhatAmI.PEER)
-                event: Any = SimpleNamespace(kind=kind, transport=transport)
-                state.connections.take(event)
+                tell(state.connections, name, is_made=is_made)
         yield
 
 

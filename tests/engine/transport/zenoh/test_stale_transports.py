@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
 
 from aionode.engine.transport.network import network_from
 from aionode.engine.transport.zenoh._defects import stale_transports
@@ -19,6 +18,7 @@ from aionode.engine.transport.zenoh._defects.stale_transports import (
 )
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.testing import ManualClock, SteppedLoop
+from tests.support.connections import tell
 from tests.support.peers import DOMAIN_ID
 
 LONG_S = 20 * DECLARED_S
@@ -49,11 +49,8 @@ class Scene:
 
     def change(self, *zids: str, is_made: bool) -> None:
         """Open or lose connections."""
-        kind = zenoh.SampleKind.PUT if is_made else zenoh.SampleKind.DELETE
         for zid in zids:
-            transport = SimpleNamespace(zid=zid, whatami=zenoh.WhatAmI.PEER)
-            event: Any = SimpleNamespace(kind=kind, transport=transport)
-            self.state.connections.take(event)
+            tell(self.state.connections, zid, is_made=is_made)
 
     def return_silently(self, *zids: str) -> None:
         """Lose participants, and reconnect them without their tokens."""

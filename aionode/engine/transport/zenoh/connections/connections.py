@@ -1,14 +1,14 @@
 """The connections of a session: the routers, peers and clients at their other ends.
 
-Zenoh reports each connection made or lost to one listener, which informs all parts of the context,
-on the event loop, in the order in which they were added.
+Zenoh reports each connection made or lost to one place, which informs all parts of the context, on
+the event loop, in the order in which they were added.
 """
 
 from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 from msgspec import Struct
@@ -72,6 +72,7 @@ class Connections:
 
     Args:
         waker: Wakes the event loop from Zenoh's threads.
+        waits_for_link: Returns whether a connection counts only once its link is reported as well.
 
     Attributes:
         kinds: The kind of each connected session, by its id.
@@ -80,30 +81,37 @@ class Connections:
         on_change: Called with each change, after `kinds` and `lost` are updated.
     """
 
-    def __init__(self, waker: LoopWaker) -> None:
+    def __init__(self, waker: LoopWaker, waits_for_link: Callable[[zenoh.Transport], bool]) -> None:
         self.kinds: dict[str, zenoh.WhatAmI] = {}
         self.lost: set[str] = set()
         self.on_change: list[Callable[[ConnectionChange], None]] = []
-        self._queue = ThreadsafeQueue(waker, self.take)
+        self._queue: ThreadsafeQueue[zenoh.TransportEvent | str] = ThreadsafeQueue(waker, self.take)
+        self._waits_for_link = waits_for_link
+        # The kinds of sessions whose connections are reported, but not their links.
+        self._reported: dict[str, zenoh.WhatAmI] = {}
         self._lost_ns: dict[str, int] = {}  # when the connection to each session was last lost
         self._changed = asyncio.Event()
-        self._listener: zenoh.TransportEventsListener[None] | None = None
+        self._listeners: list[Any] = []
 
     def start(self, session: zenoh.Session) -> None:
         """Start with a session's existing connections, and listen to changes."""
         self._changed = asyncio.Event()  # an event belongs to the loop that first waits for it
         with translated("connections"):
-            self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
-        # After the listener: a connection in between is reported twice, which is harmless.
+            self._listeners = [
+                session.info.declare_transport_events_listener(direct(self._queue.put)),
+                session.info.declare_link_events_listener(direct(self._hand_over)),
+            ]
+        # After the listeners: a connection in between is reported twice, which is harmless.
         for transport in session.info.transports():
             self._add(ConnectionChange(str(transport.zid), transport.whatami, is_made=True))
 
     def stop(self) -> None:
         """Stop listening, and forget all connections."""
-        listener, self._listener = self._listener, None
-        if listener is not None:
+        listeners, self._listeners = self._listeners, []
+        for listener in listeners:
             listener.undeclare()
         self._queue.clear()
+        self._reported.clear()
         self.kinds.clear()
         self.lost.clear()
         self._lost_ns.clear()
@@ -116,12 +124,28 @@ class Connections:
         """
         return zid in self.lost or perf_ns() - self._lost_ns.get(zid, -MOMENT_NS) < MOMENT_NS
 
-    def take(self, event: zenoh.TransportEvent) -> None:
-        """Handle Zenoh's event for one connection, on the event loop."""
+    def _hand_over(self, event: zenoh.LinkEvent) -> None:
+        """Queue the session of a new link, in a Zenoh thread."""
+        if event.kind == zenoh.SampleKind.PUT:
+            self._queue.put(str(event.link.zid))
+
+    def take(self, event: zenoh.TransportEvent | str) -> None:
+        """Handle Zenoh's event for one connection, or the session of a link, on the event loop."""
+        if isinstance(event, str):
+            kind = self._reported.pop(event, None)
+            if kind is not None:
+                self._take(event, kind, is_made=True)
+            return
         transport = event.transport
         zid = str(transport.zid)
         is_made = event.kind == zenoh.SampleKind.PUT
-        change = ConnectionChange(zid, transport.whatami, is_made, is_made and zid in self.lost)
+        if is_made and self._waits_for_link(transport):
+            self._reported[zid] = transport.whatami
+        elif is_made or self._reported.pop(zid, None) is None:
+            self._take(zid, transport.whatami, is_made=is_made)
+
+    def _take(self, zid: str, kind: zenoh.WhatAmI, *, is_made: bool) -> None:
+        change = ConnectionChange(zid, kind, is_made, is_made and zid in self.lost)
         self._add(change)
         self._changed.set()
         for call in self.on_change:
