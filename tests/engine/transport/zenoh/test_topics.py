@@ -19,6 +19,7 @@ import zenoh  # noqa: TID251  # plays the other participants, without aionode
 from aionode.engine.context import Context
 from aionode.engine.transport.loop_waker import ThreadsafeQueue
 from aionode.engine.transport.zenoh import _session_state as session_state
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
 from aionode.engine.wire import _attachment as attachment
 from aionode.engine.wire import cdr
 from aionode.engine.wire._key_expression import buffer_key, data_key
@@ -205,6 +206,7 @@ async def test_a_late_reader_gets_the_last_messages_once_and_in_order(
         quiet_node("a", first) as a,
         quiet_node("b", second) as b,
     ):
+        await has_declared(b, a)  # else messages are under way to it when it subscribes
         publisher = a.create_publisher(Int32, "n", kept(kept_by))
         for msg in numbers(8):
             publisher.publish(msg)
@@ -228,6 +230,28 @@ async def test_what_was_published_before_the_context_opened_is_kept() -> None:
             assert await first_numbers(late, 2) == [2, 3]
 
 
+async def test_what_was_published_before_the_context_opened_is_sent_to_known_readers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A new message would replace the history of a publisher that is connected afterwards."""
+    known_readers: list[int] = []
+    declare = ZenohWriter.declare_data
+
+    def note(writer: ZenohWriter, session: zenoh.Session) -> None:
+        if writer.endpoint.name == "/n":
+            assert writer.state.graph is not None
+            known_readers.append(writer.state.graph.count(EndpointKind.SUBSCRIPTION, "/n"))
+        declare(writer, session)
+
+    async with quiet_node("b") as b:
+        b.create_subscription(Int32, "n", None, kept(5))
+        a = quiet_node("a", Context())
+        a.create_publisher(Int32, "n", kept(2)).publish(Int32())
+        monkeypatch.setattr(ZenohWriter, "declare_data", note)
+        async with a:
+            assert known_readers == [1]
+
+
 async def test_a_late_volatile_reader_gets_nothing_old() -> None:
     """It requested only new messages."""
     async with (
@@ -235,6 +259,7 @@ async def test_a_late_volatile_reader_gets_nothing_old() -> None:
         quiet_node("a", first) as a,
         quiet_node("b", second) as b,
     ):
+        await has_declared(b, a)  # as above
         publisher = a.create_publisher(Int32, "n", kept(10))
         publisher.publish(Int32(data=1))
         await publisher.drain()  # else it is not late yet
@@ -591,6 +616,16 @@ def sent(sequence: int) -> bytes:
 def transport_of(node: Node) -> Any:
     """Return the Zenoh transport of a node's context."""
     return node.context.transports[1]
+
+
+async def has_declared(there: Node, here: Node) -> None:
+    """Wait until a node's context knows what another has declared so far.
+
+    Until then, Zenoh sends there whatever is published.
+    """
+    await here.context.graph.until(
+        lambda: any(node.name == there.get_name() for node in here.context.graph.nodes())
+    )
 
 
 async def matched(publisher: Any) -> None:

@@ -14,6 +14,7 @@ from zenoh import ext
 from aionode.clock import SilenceAlarm, perf_ns
 from aionode.engine.transport.base import Writer
 from aionode.engine.transport.reliability.stateful_writer import MUTE_TICKS, StatefulWriter
+from aionode.engine.transport.zenoh._defects import overtaken_history
 from aionode.engine.transport.zenoh._session_state import Declaration
 from aionode.engine.transport.zenoh.connections.handlers import (
     BLOCKING_PRIORITY,
@@ -85,6 +86,7 @@ class ZenohWriter(Declaration, Writer):
         self._matched = MatchedReaders(endpoint, state)
         self._is_watched = False  # whether `tick` is being called
         self._transient = is_transient(qos)
+        self.needs_graph = overtaken_history.needs_peers(is_transient=self._transient)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
         self.sender = ZenohSender(state, self._key, qos, self.lost)
