@@ -36,6 +36,10 @@ class ClockType(IntEnum):
     SYSTEM_TIME = 2
     STEADY_TIME = 3
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``ClockType.ROS_TIME``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 class Duration:
     """A duration, which may be negative.

@@ -936,3 +936,9 @@ async def test_advance_settles_between_two_points_in_time() -> None:
         tasks.create_task(other())
         await manual.advance(2)
     assert seen == [("chain", 1.0), ("other", 1.001)]
+
+
+def test_the_type_of_a_clock_is_printed_by_name() -> None:
+    """Of an `IntEnum`, Python prints the number; rclpy's type is another class."""
+    assert f"{ClockType.ROS_TIME}" == "ClockType.ROS_TIME"
+    assert int(ClockType.ROS_TIME) == 1

@@ -45,6 +45,10 @@ class ServiceIntrospectionState(IntEnum):
     CONTENTS = 2
     """The metadata, and the request or response itself."""
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``ServiceIntrospectionState.OFF``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 class Introspection:
     """Publishes the service events of one client or server.
