@@ -541,3 +541,14 @@ def test_a_blocked_thread_is_told_of_the_shutdown(context: rclpy.Context, node: 
     thread.join(PATIENCE_S)
 
     assert [str(error) for error in raised] == ["no answer of fibonacci: the context is shut down"]
+
+
+def test_a_destroyed_client_sends_nothing(node: Node) -> None:
+    """Its futures would never be done."""
+    client: Any = ActionClient(node, Fibonacci, "fibonacci")
+    client.destroy()
+
+    with pytest.raises(RCLError, match="Failed to send goal request: .* is destroyed"):
+        client.send_goal_async(Fibonacci.Goal())
+    with pytest.raises(RCLError, match="is destroyed"):
+        client.server_is_ready()

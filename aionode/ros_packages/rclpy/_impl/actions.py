@@ -133,12 +133,22 @@ class ActionClientHandle(ActionHandle):
         self.io = node.io
         self.context_handle = node.context_handle
 
+    def refuse_if_destroyed(self, failure: str) -> None:
+        """Raise if it is destroyed.
+
+        Raises:
+            RCLError: it is; rclpy raises InvalidHandle for other entities only.
+        """
+        if not self.is_valid:
+            raise RCLError(f"{failure}: the action client is destroyed")
+
     def is_action_server_available(self) -> bool:
         """Return whether all parts of a server exist.
 
         Raises:
-            RCLError: the context is shut down.
+            RCLError: it is destroyed, or the context is shut down.
         """
+        self.refuse_if_destroyed("Failed to check if action server is available")
         self.context_handle.refuse_after_shutdown("Failed to check if action server is available")
         services = (self.goal, self.result, self.cancel)
         return all(client.service_server_is_available() for client in services) and all(

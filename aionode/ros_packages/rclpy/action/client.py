@@ -212,6 +212,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
         Raises:
             TypeError: `goal` is of another class.
+            RCLError: the client is destroyed.
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(
@@ -246,8 +247,10 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         """Send a request to one of the services; return a future that executors complete."""
         future: Future[Any] = Future()
         pending = self._ActionClient__pending[service]
+        handle = self._ActionEntity__handle
+        handle.refuse_if_destroyed(f"Failed to send {service} request")
         with self._lock:
-            sequence = getattr(self._ActionEntity__handle, service).send_request(request)
+            sequence = getattr(handle, service).send_request(request)
             pending[sequence] = future, request
         self.add_future(future)
 
@@ -341,7 +344,11 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
     # The server
 
     def server_is_ready(self) -> bool:
-        """Return whether a server is available."""
+        """Return whether a server is available.
+
+        Raises:
+            RCLError: the client is destroyed, or the context is shut down.
+        """
         with self._node.handle:
             return self._ActionEntity__handle.is_action_server_available()
 
@@ -353,6 +360,9 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
         Returns:
             Whether one is available.
+
+        Raises:
+            RCLError: the client is destroyed, or the context is shut down.
         """
         return wait_until(self.server_is_ready, self._node.context, timeout_sec)
 
