@@ -548,7 +548,7 @@ def test_a_destroyed_client_sends_nothing(node: Node) -> None:
     client: Any = ActionClient(node, Fibonacci, "fibonacci")
     client.destroy()
 
-    with pytest.raises(RCLError, match="Failed to send goal request: .* is destroyed"):
+    with pytest.raises(RCLError, match=r"Failed to send goal request: .* is destroyed"):
         client.send_goal_async(Fibonacci.Goal())
     with pytest.raises(RCLError, match="is destroyed"):
         client.server_is_ready()
