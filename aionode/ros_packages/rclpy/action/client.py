@@ -98,7 +98,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         Raises:
             RCLError: the context was shut down meanwhile.
         """
-        return self._action_client._blocked(self.cancel_goal_async())
+        return self._action_client._ActionClient__blocked(self.cancel_goal_async())
 
     def cancel_goal_async(self) -> Future[Any]:
         """Ask the server to cancel it; return a future for the answer."""
@@ -110,7 +110,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         Raises:
             RCLError: the context was shut down meanwhile.
         """
-        return self._action_client._blocked(self.get_result_async())
+        return self._action_client._ActionClient__blocked(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
         """Request the goal's result; return a future for it."""
@@ -182,10 +182,10 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             TypeError: `goal` is of another class.
             RCLError: the context was shut down meanwhile.
         """
-        handle = self._blocked(self.send_goal_async(goal, **kwargs))
+        handle = self._ActionClient__blocked(self.send_goal_async(goal, **kwargs))
         return handle.get_result()
 
-    def _blocked(self, future: Future[Any]) -> Any:
+    def _ActionClient__blocked(self, future: Future[Any]) -> Any:
         """Block the thread until a future is done; return its result.
 
         Raises:
