@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
 import sys
 import threading
+import weakref
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -824,3 +826,52 @@ def test_giving_a_request_up_costs_the_same_however_many_are_pending() -> None:
     with pytest.raises(KeyError):
         client.get_pending_request(len(few) + len(many))
     assert client.get_pending_request(len(few) + len(many) - 1) is many[-2]
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_sleep_that_an_exception_ends_changes_none_after_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A signal handler raises; a count of those who sleep would never be right again."""
+    node = rclpy.create_node("interrupted")
+    rate = node.create_rate(0.001)
+    (timer,) = node.timers
+    would_return: list[bool] = []
+
+    def interrupt(*_: Any) -> bool:
+        raise InterruptedError
+
+    def look(is_ready: Callable[[], bool], *_: Any) -> bool:
+        would_return.append(is_ready())
+        return True
+
+    monkeypatch.setattr("rclpy.timer.wait_until", interrupt)
+    with pytest.raises(InterruptedError):
+        rate.sleep()
+    monkeypatch.setattr("rclpy.timer.wait_until", look)
+    rate.sleep()
+    assert timer.callback is not None
+    timer.callback()
+    rate.sleep()
+    rate.sleep()
+
+    assert would_return == [False, True, False]
+
+
+@pytest.mark.usefixtures("initialised")
+def test_an_object_whose_method_waits_for_the_shutdown_is_not_kept() -> None:
+    """Not even if the function of the method refers to it."""
+
+    def listen() -> weakref.ref[Any]:
+        class Listener:
+            def end(self) -> None:
+                raise AssertionError(listener)
+
+        listener = Listener()
+        rclpy.get_default_context().on_shutdown(listener.end)
+        return weakref.ref(listener)
+
+    listener = listen()
+    gc.collect()
+
+    assert listener() is None

@@ -54,14 +54,39 @@ WITHOUT_SHUTDOWN = """\
 import threading
 
 import rclpy
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 
 rclpy.init()
 node = rclpy.create_node("forgetful")
 executor = SingleThreadedExecutor()
 executor.add_node(node)
+pool = MultiThreadedExecutor(2)
 called = threading.Event()
-node.create_timer(0.01, called.set)
+node.create_timer(0.001, called.set)
+"""
+
+
+PUBLISHING_HANDLER = """\
+import logging
+from std_msgs.msg import String
+
+publisher = node.create_publisher(String, "log", 10)
+
+
+class Handler(logging.Handler):
+    def emit(self, record):
+        publisher.publish(String(data=record.getMessage()))
+        called.set()
+
+
+def work():
+    while True:
+        logging.error("hello")
+
+
+logging.getLogger().addHandler(Handler())
+threading.Thread(target=work, daemon=True).start()
+assert called.wait(10)
 """
 
 
@@ -112,6 +137,7 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
         "executor.spin_once(timeout_sec=10)",
         "threading.Thread(target=executor.spin, daemon=True).start()",
         "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()",
+        "pool.add_node(node)\nthreading.Thread(target=pool.spin, daemon=True).start()",
     ],
 )
 def test_a_program_that_ends_without_shutdown_says_nothing(folder: Path, spin: str) -> None:
@@ -119,6 +145,15 @@ def test_a_program_that_ends_without_shutdown_says_nothing(folder: Path, spin: s
     (folder / "forgetful.py").write_text(f"{WITHOUT_SHUTDOWN}{spin}\nassert called.wait(10)\n")
 
     done = run(folder, "forgetful.py", fresh=True)
+
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_thread_that_publishes_until_the_end_gets_no_error(folder: Path) -> None:
+    """A logging handler that publishes holds a lock that Python needs at the end."""
+    (folder / "talkative.py").write_text(f"{WITHOUT_SHUTDOWN}{PUBLISHING_HANDLER}")
+
+    done = run(folder, "talkative.py", fresh=True)
 
     assert (done.returncode, done.stderr) == (0, "")
 

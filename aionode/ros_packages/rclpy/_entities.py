@@ -6,7 +6,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, Self, TypeVar
 
 from aionode.clock import MachineTime
-from rclpy._impl.destroyable import Destroyable, Wakeup
+from rclpy._impl.destroyable import Destroyable, Signal, Wakeup
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -138,10 +138,9 @@ def wait_until(
     ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
     step_s = CHECK_S if wakeup is None else None
     wakeup = wakeup or Wakeup()
-    signals = [] if context.handle is None else [context.handle.signal]
-    for signal in signals:
-        signal.add(wakeup)
+    signal = Signal() if context.handle is None else context.handle.signal
     try:
+        signal.add(wakeup)
         while not is_ready():
             left_s = step_s
             if ends_ns is not None:
@@ -154,5 +153,4 @@ def wait_until(
             wakeup.wait(left_s)
         return True
     finally:
-        for signal in signals:
-            signal.remove(wakeup)
+        signal.remove(wakeup)

@@ -99,17 +99,19 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         with self._handle:
             with self._lock:
                 sequence = self._handle.send_request(request, take)
-            if self.context.ok():
-                has_come = wait_until(lambda: responses, self.context, timeout_sec, wakeup)
-            else:  # a last word, such as the stop of a motor after a signal
-                limit_s = LAST_CALL_S if timeout_sec is None else min(timeout_sec, LAST_CALL_S)
-                has_come = wakeup.wait(limit_s)
-            if not has_come:
-                self._handle.forget(sequence)
+            try:
+                if self.context.ok():
+                    wait_until(lambda: responses, self.context, timeout_sec, wakeup)
+                else:  # a last word, such as the stop of a motor after a signal
+                    limit_s = LAST_CALL_S if timeout_sec is None else min(timeout_sec, LAST_CALL_S)
+                    wakeup.wait(limit_s)
+            finally:
+                if not responses:  # perhaps a signal handler has raised
+                    self._handle.forget(sequence)
+            if not responses:
                 if not self.context.ok():
                     raise RCLError(f"no response of {self.srv_name}: the context is shut down")
-                if not responses:
-                    raise TimeoutError
+                raise TimeoutError
             response: ResponseT = self._handle.receive(sequence, responses[0])
             cause = self._handle.take_cause(sequence)
         if cause is not None:

@@ -45,13 +45,13 @@ def weakly(method: MethodType, forget: Callable[[], object]) -> Callable[[], Non
     Not `weakref.WeakMethod`, which prints an AttributeError at the end of a program if it ends
     before the object. The garbage collector runs `forget` anywhere, so it must not need a lock.
     """
-    function = method.__func__
-    reference = weakref.ref(method.__self__, lambda _: forget())
+    owner = weakref.ref(method.__self__, lambda _: forget())
+    function = weakref.ref(method.__func__, lambda _: forget())  # it may refer to the object
 
     def call() -> None:
-        owner = reference()
-        if owner is not None:
-            function(owner)
+        self, called = owner(), function()
+        if self is not None and called is not None:
+            called(self)
 
     return call
 

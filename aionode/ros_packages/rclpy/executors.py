@@ -598,7 +598,11 @@ class MultiThreadedExecutor(Executor):
         if entity is not None:
             entity._executor_turn = next(self._Executor__turns)
         task._scheduled = True
-        self._executor.submit(self._Executor__step, task)
+        try:
+            self._executor.submit(self._Executor__step, task)
+        except RuntimeError:  # at the end of the process, when Python has ended all pools
+            task.cancel()
+            return
         if task not in self._futures:
             self._futures.append(task)
         for future in self._futures[:]:

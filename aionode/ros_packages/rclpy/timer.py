@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import threading
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import ClockType
@@ -144,17 +143,16 @@ class Rate:
         self._context = context
         self._is_shutdown = False
         self._is_destroyed = False
-        # Stays until the last sleeper has woken; a tick while nobody sleeps ends the next sleep.
-        self._has_ticked = False
+        # The number of ticks, and of those that have ended a sleep: one while nobody sleeps ends
+        # the next sleep. No lock and no count of sleepers, as a signal handler may sleep, or raise.
+        self._ticks = 0
+        self._slept = 0
         self._signal = Signal()
-        # Guards the number of sleepers; a signal handler may sleep, too.
-        self._lock = threading.RLock()
-        self._num_sleepers = 0
         self._timer.callback = self._tick
         context.on_shutdown(self._on_shutdown)
 
     def _tick(self) -> None:
-        self._has_ticked = True
+        self._ticks += 1
         self._signal.notify()
 
     def _on_shutdown(self) -> None:
@@ -182,18 +180,13 @@ class Rate:
             raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
         if not self._context.ok():
             raise ROSInterruptException
-        wakeup = Wakeup()
-        with self._lock:
-            self._num_sleepers += 1
-        self._signal.add(wakeup)
+        slept, wakeup = self._slept, Wakeup()
         try:
-            wait_until(lambda: self._has_ticked, self._context, None, wakeup)
+            self._signal.add(wakeup)
+            wait_until(lambda: self._ticks > slept, self._context, None, wakeup)
         finally:
             self._signal.remove(wakeup)
-            with self._lock:
-                self._num_sleepers -= 1
-                if self._num_sleepers == 0:
-                    self._has_ticked = False
+        self._slept = self._ticks
         self._refuse_if_shut_down()
 
     def _refuse_if_shut_down(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import atexit
 import os
 import weakref
-from threading import Event, current_thread, get_ident
+from threading import get_ident
 from typing import TYPE_CHECKING
 
 from aionode import Context
@@ -34,9 +34,6 @@ LAST_WORDS_S = 2.0
 
 LAST_CALL_S = 1.0
 """How long it waits for a response then; it may have to publish, too."""
-
-PROCESS_END_S = 5.0
-"""How long a daemon thread waits for the end of the process: `atexit` functions may join it."""
 
 steady_ns = MachineTime().steady_ns
 
@@ -95,7 +92,6 @@ class ContextHandle(Destroyable):
         self.logs = False
         self._closed = False
         self._signalled = False
-        self._abandoned = False
         self._told_ns: dict[int, int] = {}  # by thread: when it learned of the signal
         arguments = parsed(args)
         context = Context(domain_id=domain_id)
@@ -113,15 +109,9 @@ class ContextHandle(Destroyable):
         return True
 
     def note_told(self) -> None:
-        """Record that this thread of the program has learned of the shutdown.
-
-        A daemon thread of a program that has ended without shutting down never learns of it in
-        rclpy: it spins until the process ends. Here it waits for that end.
-        """
+        """Record that this thread of the program has learned of the shutdown."""
         if self._signalled:
             self._told_ns.setdefault(get_ident(), steady_ns())
-        elif self._abandoned and current_thread().daemon and not self.io.is_current:
-            Event().wait(PROCESS_END_S)
 
     def refuse_to_publish(self) -> None:
         """Raise after shutdown, unless a signal caused it, and the message is a last word.
@@ -205,12 +195,6 @@ class ContextHandle(Destroyable):
         """Send everything published, leave the graph, and end the thread."""
         self.io.stop()
 
-    def abandon(self) -> None:
-        """Close at the end of a program that has not shut down."""
-        self._abandoned = True
-        self.mark_shut_down()
-        self.close()
-
     def _destroy(self) -> None:
         self.is_shut_down = True
         if hasattr(self, "io"):
@@ -221,9 +205,13 @@ class ContextHandle(Destroyable):
 # functions registered last are called first.
 @atexit.register
 def close_all() -> None:
-    """Send what a program has published that ends without `shutdown`."""
+    """Send what a program has published that ends without `shutdown`.
+
+    The contexts are not shut down: daemon threads spin until the process ends, as in rclpy, and
+    nothing that they still publish is sent.
+    """
     for context in living_contexts():
-        context.abandon()
+        context.close()
 
 
 def abandon_all() -> None:

@@ -186,7 +186,9 @@ class IoThread:
                         return
                     loop = self._loop
                     if self._work or loop is None or not loop.borrow():
-                        self.post(partial(publisher.publish_elsewhere, msg, sequence, source_ns))
+                        if not self._ended:
+                            send = partial(publisher.publish_elsewhere, msg, sequence, source_ns)
+                            self.post(send)
                         return
                     # `send` inlined: two calls less for each message.
                     try:

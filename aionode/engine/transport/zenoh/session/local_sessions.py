@@ -84,17 +84,16 @@ def listed(group: int) -> set[int] | None:
 
 def listening() -> set[int] | None:
     """Return the TCP ports at which processes listen; None if the machine does not list them."""
-    lines: list[str] = []
+    paths = [path for path in TCP_SOCKETS if path.exists()]  # without IPv6, one of them
     try:
-        for path in filter(Path.exists, TCP_SOCKETS):
-            lines += path.read_text("ascii").splitlines()[1:]
+        lines = [line for path in paths for line in path.read_text("ascii").splitlines()[1:]]
     except OSError:  # a sandbox may hide it
         return None
     columns = (line.split(maxsplit=4) for line in lines)
     ports = {
         int(local.rpartition(":")[2], 16) for _, local, _, state, _ in columns if state == LISTENS
     }
-    return ports or None
+    return ports if paths else None
 
 
 def groups() -> set[int]:
