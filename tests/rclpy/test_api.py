@@ -25,7 +25,7 @@ from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescrip
 from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.message import SerializedMessage
 from rclpy import executors
-from rclpy._impl.errors import RCLError
+from rclpy._impl.errors import RCLError, RMWError
 from rclpy._impl.topics import SubscriptionHandle
 from rclpy._impl.typesupport import service_support
 from rclpy.action import ActionClient, ActionServer, CancelResponse
@@ -36,7 +36,7 @@ from rclpy.experimental.asyncio import AsyncNode
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
-from rclpy.serialization import serialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.task import Future
@@ -113,6 +113,12 @@ def test_a_message_whose_stamp_says_nothing_lives_from_its_arrival_on(stamp_ns: 
     taken = subscription.handle.take_message(String, raw=False)
     assert taken is not None
     assert taken[1]["publication_sequence_number"] == 2
+
+
+def test_bytes_that_are_no_message_are_an_error_of_the_middleware() -> None:
+    """As in rclpy, so that programs which skip bad messages catch it as RuntimeError."""
+    with pytest.raises(RMWError, match=r"failed to deserialize ROS message: std_msgs/msg/String"):
+        deserialize_message(b"\x00\x01\x00\x00\xff", String)
 
 
 @pytest.mark.usefixtures("initialised")

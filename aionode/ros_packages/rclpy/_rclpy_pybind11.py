@@ -19,6 +19,7 @@ from rclpy._impl.errors import (
     NodeNameNonExistentError,
     RCLError,
     RCLInvalidROSArgsError,
+    RMWError,
     TimerCancelledError,
     UnknownROSArgsError,
     UnsupportedEventTypeError,
@@ -34,7 +35,7 @@ from rclpy._impl.timers import GuardConditionHandle as GuardCondition
 from rclpy._impl.timers import TimerHandle as Timer
 from rclpy._impl.topics import PublisherHandle as Publisher
 from rclpy._impl.topics import SubscriptionHandle as Subscription
-from rclpy._impl.typesupport import message_support
+from rclpy._impl.typesupport import deserialized, message_support
 from rclpy._impl.wait_set import WaitSet
 from rclpy.signals import SignalHandlerOptions
 
@@ -57,6 +58,7 @@ __all__ = [
     "Publisher",
     "RCLError",
     "RCLInvalidROSArgsError",
+    "RMWError",
     "Service",
     "SignalHandlerOptions",
     "Subscription",
@@ -91,4 +93,4 @@ def rclpy_serialize(message: Any, message_type: Any) -> bytes:
 
 def rclpy_deserialize(data: bytes, message_type: Any) -> Any:
     """Decode a message from bytes (CDR)."""
-    return message_support(message_type).decode(data)
+    return deserialized(data, message_type)

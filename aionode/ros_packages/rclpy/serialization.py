@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rclpy._impl.typesupport import message_support
+from rclpy._impl.typesupport import deserialized, message_support
 from rclpy.type_support import check_for_type_support
 
 __all__ = ["deserialize_message", "serialize_message"]
@@ -26,7 +26,7 @@ def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
 
     Raises:
         AttributeError: `message_type` is not a message class.
-        DecodeError: the bytes are not such a message (a ValueError).
+        RMWError: the bytes are not such a message (a RuntimeError).
     """
     check_for_type_support(message_type)
-    return message_support(message_type).decode(serialized_message)
+    return deserialized(serialized_message, message_type)

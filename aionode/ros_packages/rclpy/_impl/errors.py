@@ -7,6 +7,7 @@ __all__ = [
     "NodeNameNonExistentError",
     "RCLError",
     "RCLInvalidROSArgsError",
+    "RMWError",
     "TimerCancelledError",
     "UnknownROSArgsError",
     "UnsupportedEventTypeError",
@@ -15,6 +16,12 @@ __all__ = [
 
 class RCLError(RuntimeError):
     """An operation of the client library failed."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class RMWError(RuntimeError):
+    """An operation of the middleware failed."""
 
     __module__ = "rclpy._rclpy_pybind11"
 

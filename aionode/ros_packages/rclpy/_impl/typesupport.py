@@ -5,7 +5,9 @@ from __future__ import annotations
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from aionode.errors import DecodeError
 from aionode.message import ActionType, Message, ServiceType, serialized
+from rclpy._impl.errors import RMWError
 from rosidl_generator_py import (
     aionode_class,
     decoder_of,
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MessageSupport",
     "ServiceSupport",
+    "deserialized",
     "expect_message",
     "message_like",
     "message_support",
@@ -88,6 +91,18 @@ def service_support(cls: Any) -> ServiceSupport:
         MessageSupport(cls.Request, wire_type.Request),
         MessageSupport(cls.Response, wire_type.Response),
     )
+
+
+def deserialized(data: bytes, cls: Any) -> Any:
+    """Return the message of `cls` in bytes.
+
+    Raises:
+        RMWError: they are not such a message.
+    """
+    try:
+        return message_support(cls).decode(data)
+    except DecodeError as error:
+        raise RMWError(f"failed to deserialize ROS message: {error}") from error
 
 
 def type_of(message: object) -> str:
