@@ -9,7 +9,7 @@ import struct
 import sys
 import threading
 from contextlib import AsyncExitStack, suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import zenoh  # noqa: TID251  # type of sessions
@@ -17,7 +17,7 @@ import zenoh  # noqa: TID251  # type of sessions
 from aionode._process.concurrency import checkpoint
 from aionode.engine.context import Context
 from aionode.engine.transport.zenoh import _transport
-from aionode.engine.transport.zenoh._defects import lingering
+from aionode.engine.transport.zenoh._defects import closing, lingering
 from aionode.engine.transport.zenoh._defects.blocked_sends import UNREAD_MS
 from aionode.engine.transport.zenoh._defects.closing import unanswered
 from aionode.engine.transport.zenoh.connections import sockets as _sockets
@@ -27,6 +27,9 @@ from aionode.engine.transport.zenoh.session.session import close_session, open_r
 from tests.support.living import living
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until, waited_s
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
@@ -164,6 +167,67 @@ async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
         async with quiet_node("second", second):
             await until(more_has_come)
             await until(all_is_read)
+
+
+@pytest.fixture
+def full(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, socket.socket]]:
+    """Return both ends of the only connection, whose second end has not read what was sent."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        sender = socket.create_connection(server.getsockname())
+        receiver, _ = server.accept()
+    with sender, receiver:
+        sender.setblocking(False)
+        with suppress(BlockingIOError):
+            while True:
+                sender.send(bytes(1 << 16))
+        descriptor = sender.fileno(), os.fstat(sender.fileno()).st_ino
+        monkeypatch.setattr(closing, "connections", lambda _: {descriptor: None})
+        monkeypatch.setattr(closing, "unanswered", set)
+        yield sender, receiver
+
+
+async def test_a_close_waits_for_a_peer_only_until_it_reads(
+    full: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each command beside other processes took a tenth of a second more."""
+    monkeypatch.setattr(closing, "STUCK_S", 30.0)
+    sender, receiver = full
+    session: Any = None
+
+    def read() -> None:
+        while closing.unsent_bytes(closing.connections(session)):
+            receiver.recv(1 << 16)
+
+    async with asyncio.timeout(20):
+        await asyncio.gather(asyncio.to_thread(closing.cut_stuck, session), asyncio.to_thread(read))
+
+    sender.send(b"it is not cut")
+
+
+async def test_a_close_cuts_the_connection_to_a_peer_that_does_not_read(
+    full: tuple[socket.socket, socket.socket],
+) -> None:
+    """Zenoh would wait for it as long as for the end of its lease."""
+    session: Any = None
+
+    await asyncio.to_thread(closing.cut_stuck, session)
+
+    with pytest.raises(BrokenPipeError):
+        full[0].send(b"it is cut")
+
+
+async def test_connections_that_were_just_made_do_not_linger_at_a_close(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What a command sends last is acknowledged up to 40 ms later, and closing waited for it."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 60.0)
+    async with two_contexts() as both:
+        session = session_of(both[0])
+        assert {lingers for lingers, _ in options(session)} == {True}
+
+        await asyncio.to_thread(closing.cut_stuck, session)
+
+        assert {lingers for lingers, _ in options(session)} == {False}
 
 
 def not_seen(_: zenoh.Session) -> None:

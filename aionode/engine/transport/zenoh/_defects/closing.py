@@ -24,7 +24,9 @@ import threading
 from typing import TYPE_CHECKING, Final
 
 from aionode._process.socket_queue import queued_bytes
+from aionode.clock import perf_ns
 from aionode.engine.transport.zenoh._defects import _switch
+from aionode.engine.transport.zenoh._defects.lingering import stop_lingering
 from aionode.engine.transport.zenoh.connections.sockets import (
     ACKED,
     RECEIVED,
@@ -38,6 +40,8 @@ from aionode.engine.transport.zenoh.connections.sockets import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import zenoh
 
 __all__ = ["cut_stuck", "cut_unanswered"]
@@ -46,8 +50,12 @@ INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
 """The address families of connections between hosts."""
 
 STUCK_S: Final = 0.1
-"""How long a peer may leave pending bytes unread before nothing waits for it any more, in
+"""How long a peer may leave no room for pending bytes before nothing waits for it any more, in
 seconds."""
+
+FIRST_PAUSE_S: Final = 0.001
+"""The time until the first check within that time, in seconds; each further one takes twice as
+long. Most peers read within a millisecond."""
 
 RESET: Final = struct.pack("ii", 1, 0)
 """SO_LINGER for a connection that is cut: pending bytes are dropped."""
@@ -58,6 +66,9 @@ ESTABLISHED: Final = 1
 FIRST_BYTES: Final = 2048
 """Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""
 
+SIOCOUTQNSD: Final = 0x894B
+"""Asks a TCP socket of Linux how many bytes it could not send yet: not those on their way."""
+
 ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
 """SO_LINGER as Zenoh sets it."""
 
@@ -67,11 +78,15 @@ def is_mended() -> bool:
     return sys.platform.startswith("linux") and _switch.is_mended("closing")
 
 
-def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
-    """Return the number of pending bytes in each socket of a session, omitting zeros."""
-    own = connections(session)
-    waiting = {descriptor: queued_bytes(copy) for descriptor, copy in duplicates(own)}
-    return {descriptor: size for descriptor, size in waiting.items() if size}
+def unsent_bytes(those: Iterable[Descriptor]) -> dict[Descriptor, int]:
+    """Return the number of bytes that the system could not send yet, by socket, omitting zeros."""
+    import fcntl
+
+    unsent = {
+        descriptor: int.from_bytes(fcntl.ioctl(copy, SIOCOUTQNSD, bytes(4)), sys.byteorder)
+        for descriptor, copy in duplicates(those)
+    }
+    return {descriptor: size for descriptor, size in unsent.items() if size}
 
 
 def unanswered() -> set[Descriptor]:
@@ -109,14 +124,19 @@ def cut_stuck(session: zenoh.Session) -> None:
     """Cut connections that a session about to be closed would wait for.
 
     These are connections whose peers do not read, and connections being made with peers that do not
-    answer. Runs in a thread.
+    answer; both are waited for as long as they may still do so. Runs in a thread.
     """
     if not is_mended():
         return
-    before, silent = waiting_bytes(session), unanswered()
-    if not before and not silent:
-        return
-    threading.Event().wait(STUCK_S)
-    after = waiting_bytes(session)
-    stuck = {descriptor for descriptor, size in before.items() if after.get(descriptor, 0) >= size}
-    cut(stuck | (silent & unanswered()), RESET)
+    own = connections(session)
+    stop_lingering(own)
+    unsent, silent = unsent_bytes(own), unanswered()
+    ends_ns = perf_ns() + int(STUCK_S * 1e9)
+    pause_s = FIRST_PAUSE_S
+    while (unsent or silent) and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+        threading.Event().wait(min(pause_s, left_s))
+        pause_s *= 2
+        still = unsent_bytes(unsent)
+        unsent = {each: size for each, size in unsent.items() if still.get(each, 0) >= size}
+        silent = silent and silent & unanswered()
+    cut({*unsent, *silent}, RESET)

@@ -37,9 +37,11 @@ from aionode.engine.transport.zenoh.connections.sockets import (
 )
 
 if TYPE_CHECKING:
-    from aionode.engine.transport.zenoh.connections.sockets import Pair
+    from collections.abc import Iterable
 
-__all__ = ["SocketOptions"]
+    from aionode.engine.transport.zenoh.connections.sockets import Descriptor, Pair
+
+__all__ = ["SocketOptions", "stop_lingering"]
 
 UNREACHABLE_MS: Final = 5_000
 """How long sent bytes may stay unacknowledged before a connection to another machine is lost, in
@@ -127,9 +129,16 @@ class SocketOptions:
             new = self._new.copy()
             self._new.clear()
         peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
+        stop_lingering(peers)
         for descriptor, copy in duplicates(peers):
             limit_ms = unread_ms() if is_near(peers[descriptor]) else UNREACHABLE_MS
             with suppress(OSError):  # it is lost already
-                if is_mended("lingering"):
-                    copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
                 copy.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
+
+
+def stop_lingering(those: Iterable[Descriptor]) -> None:
+    """Let nothing wait for the peers when some connections are closed."""
+    if is_mended("lingering"):
+        for _, copy in duplicates(those):
+            with suppress(OSError):  # it is lost already
+                copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
