@@ -11,11 +11,11 @@ import platform
 import socket
 import sys
 from functools import cache
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from aionode import __version__
 from aionode._process.processor_waits import WAITS
 from aionode.clock import perf_ns, process_ns
 
@@ -133,7 +133,7 @@ def unchanging() -> dict[str, Any]:
     return {
         "host": socket.gethostname(),
         "program": " ".join(sys.argv)[:MAX_TEXT] or sys.executable,
-        "version": version("aionode"),
+        "version": __version__,
         "python": platform.python_version(),
         "cores": os.cpu_count() or 1,
     }

@@ -980,7 +980,7 @@ def endpoint_setup(
 ) -> EndpointSetup:
     """Return the arguments for a new endpoint of a node; `NodeCore.add` puts it into the graph."""
     core = core_of(node)
-    if core.constructed:  # the built-in services are rarely called and do not need it to start
+    if core.constructed:  # the built-in services do without
         load_arrays(ros_type)
     full_name = core.resolve(name, is_service=kind in SERVICE_KINDS)
     profile = qos.as_profile(qos_profile)
@@ -1102,8 +1102,7 @@ def topic_endpoints(node: Node, kind: EndpointKind, topic_name: str) -> list[Top
 def load_arrays(ros_type: Any) -> None:
     """Import numpy if a type has array fields, so that no callback has to wait for the import.
 
-    The built-in services have such fields too but are rarely called, so a node with no other such
-    types starts without it.
+    The built-in services have such fields too, but do without it: see `cdr.decode_request`.
     """
     halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
     if any(holds_arrays(half) for half in halves):

@@ -8,7 +8,6 @@ or with the same client name (``?client=``).
 
 from __future__ import annotations
 
-import importlib.metadata
 from collections.abc import AsyncGenerator, Awaitable, Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -19,6 +18,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
+from aionode import __version__
 from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import until_disconnected
 from aionode.gateway.http.answers import (
@@ -226,9 +226,8 @@ class HttpApi:
         """Return a document of all requests that the caller may send; ``?all=1`` omits nothing."""
         user_only = asked.request.query_params.get("all", "0") in {"0", "false", ""}
         offered = await offers(asked.session, user_only=user_only)
-        version = importlib.metadata.version("aionode")
         title = f"aionode gateway {self._clients.node.get_fully_qualified_name()}"
-        return json_response(openapi(title, version, offered))
+        return json_response(openapi(title, __version__, offered))
 
     async def metrics(self, asked: Asked) -> Response:
         """Return the counts of nodes and of the gateway, for Prometheus."""

@@ -172,7 +172,7 @@ def stored(field: Field) -> list[str]:
     if is_numeric(type_) and type_.container == "array":
         return [f"{target} = {name}.copy()"]
     if is_numeric(type_):
-        octets = name if type_.form == "bytes" else f"{name}.data.cast('B')"
+        octets = name if type_.form == "bytes" else f"{name}.cast('B')"
         return [
             f"{target} = VALUES = ARRAY({TYPE_CODES[type_.kind]!r})",
             f"if COUNT({name}): VALUES.frombytes({octets})",
@@ -184,4 +184,4 @@ def stored(field: Field) -> list[str]:
     return [f"{target} = {name}"]
 
 
-FAMILY: Final = MessageFamily(python_class, constructor, to_aionode, prefix="_")
+FAMILY: Final = MessageFamily(python_class, constructor, to_aionode, prefix="_", has_arrays=False)

@@ -76,7 +76,7 @@ class LinkServer(Registration):
         """Handle a request; a handler may run within this call until `inline_deadline_ns`."""
         gid, sequence = sample_info.gid, sample_info.sequence
         try:
-            message = cdr.decode(self.srv_type.Request, payload)
+            message = cdr.decode_request(self.srv_type.Request, payload)
         except DecodeError as error:
             self._registry.drops.note(Drop.MALFORMED, self.endpoint.name, f"a request ({error})")
             connection.send(Fail(gid, sequence, "DecodeError", str(error)))

@@ -161,7 +161,7 @@ class RclServer(RclDeclaration):
             gid = bytes(info.request_id.gid)
             if self.state.is_own(gid):
                 return True
-            message = cdr.decode(self.srv_type.Request, payload)
+            message = cdr.decode_request(self.srv_type.Request, payload)
         except (DecodeError, TransportError) as error:
             self.state.note_malformed(self.endpoint.name, str(error))
             return True

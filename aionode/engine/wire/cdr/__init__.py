@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import struct
+import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from operator import attrgetter
@@ -16,15 +17,17 @@ from typing import Any, TypeAlias, TypeVar
 
 from aionode.engine.wire.cdr._decoder import generate_decoder
 from aionode.engine.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
-from aionode.engine.wire.cdr._family import OWN, MessageFamily
+from aionode.engine.wire.cdr._family import OWN, PLAIN, MessageFamily
 from aionode.engine.wire.cdr._layout import has_buffers, has_views
 from aionode.errors import MessageError
 from aionode.message import Message, fields, snapshotter, type_name, unserialized
 
 __all__ = [
+    "PLAIN",
     "Data",
     "MessageFamily",
     "decode",
+    "decode_request",
     "decoder",
     "encode",
     "encoder",
@@ -69,6 +72,17 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
     except KeyError:
         function = DECODERS[msg_type] = decoder(msg_type)
     return function(data)  # type: ignore[no-any-return] # a message of this type
+
+
+def decode_request(msg_type: type[MessageT], data: Data) -> MessageT:
+    """Decode like `decode`, but with memoryviews in place of arrays if numpy is not loaded.
+
+    Importing it takes longer than a callback may. It is loaded before an endpoint of such a type
+    is created, except for a node's built-in services, which read either.
+    """
+    if "numpy" in sys.modules:
+        return decode(msg_type, data)
+    return decoder(msg_type, PLAIN)(data)
 
 
 def encoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[MessageT], bytes]:

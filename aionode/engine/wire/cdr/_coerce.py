@@ -7,12 +7,14 @@ and otherwise raise `NeedsFallback`: the encoder then encodes a snapshot of the 
 from __future__ import annotations
 
 import struct
+import sys
 from array import array
 from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from aionode.engine.wire.cdr._codegen import NeedsFallback
+from aionode.engine.wire.cdr._constants import NOTHING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,26 +58,34 @@ def real_numbers(*values: object) -> None:
 
 
 @cache
-def array_coercer(dtype: Any, code: str) -> Callable[[object], Any]:
-    """Return a function that makes an ndarray of a list, an `array.array` or an ndarray subclass.
+def array_coercer(dtype: str, code: str) -> Callable[[object], Any]:
+    """Return a function that makes a buffer of a list, an `array.array` or an ndarray.
+
+    Buffers have the elements of the field, in the order of bytes of the encoding. Only an ndarray
+    is returned as one, so that other values need no numpy.
 
     Args:
-        dtype: The dtype of the field.
+        dtype: The dtype of the field, without an order of bytes.
         code: The `struct` format character of its elements.
     """
-    import numpy as np
+    pack, classes = struct.pack, CLASSES[dtype[0]]
 
-    ndarray, frombuffer, pack, classes = np.ndarray, np.frombuffer, struct.pack, CLASSES[dtype.kind]
-
-    def coerce(value: object) -> Any:
+    def coerce(value: Any) -> Any:
         if isinstance(value, (list, tuple)):  # a union takes three times as long
             if not classes.issuperset(map(type, value)):
                 raise NeedsFallback
-            return frombuffer(pack(f"<{len(value)}{code}", *value), dtype)  # checks the ranges
+            if not value:
+                return NOTHING
+            packed = pack(f"<{len(value)}{code}", *value)  # checks the ranges
+            return memoryview(packed).cast(code)  # type: ignore[call-overload]  # a character of `PRIMITIVES`
         if isinstance(value, array) and value.typecode == code:
-            return frombuffer(value, dtype)
-        if not isinstance(value, ndarray) or value.dtype != dtype:
+            return memoryview(value)
+        if "numpy" not in sys.modules:
             raise NeedsFallback
-        return value.view(ndarray)
+        import numpy as np
+
+        if not isinstance(value, np.ndarray) or value.dtype != f"<{dtype}":
+            raise NeedsFallback
+        return value.view(np.ndarray)
 
     return coerce

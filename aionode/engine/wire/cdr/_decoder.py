@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from aionode.engine.wire.cdr._codegen import CodeBuilder, NeedsFallback
-from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER, NOTHING
 from aionode.engine.wire.cdr._family import OWN, MessageFamily
 from aionode.engine.wire.cdr._layout import (
     PHASES,
@@ -261,9 +261,16 @@ class DecoderGenerator:
             return
         count = self._count(kind)
         self._align_elements(primitive.size, count)
-        empty = source.constant("empty", EMPTY[DTYPES[kind.kind]]())
-        source.line(f"{local} = {self._array(kind.kind, count, 'pos')} if {count} else {empty}")
-        source.position(f"pos += {primitive.size} * {count}")
+        if self._family.has_arrays:
+            empty = source.constant("empty", EMPTY[DTYPES[kind.kind]]())
+            source.line(f"{local} = {self._array(kind.kind, count, 'pos')} if {count} else {empty}")
+            source.position(f"pos += {primitive.size} * {count}")
+            return
+        empty = source.constant("nothing", NOTHING)
+        start = self._skip(f"{primitive.size} * {count}", primitive.size)
+        source.require("pos <= len(data)")
+        numbers = f"{self._view()}[{start}:pos].cast({primitive.code!r})"
+        source.line(f"{local} = {numbers} if {count} else {empty}")
 
     def _messages(self, kind: FieldType, cls: Any, local: str) -> None:
         source = self._source

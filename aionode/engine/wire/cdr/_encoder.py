@@ -10,6 +10,7 @@ which also raises the errors.
 from __future__ import annotations
 
 import struct
+import sys
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -286,16 +287,18 @@ class EncoderGenerator:
         self._variable(local, size, 1)
 
     def _numbers(self, kind: FieldType, local: str) -> None:
-        import numpy as np
-
         source = self._source
         primitive = PRIMITIVES[kind.kind]
-        wanted = np.dtype(f"<{primitive.dtype}")
-        dtype = source.constant("dtype", wanted)
-        array = source.constant("ndarray", np.ndarray)
-        closer = source.constant("usual", array_coercer(wanted, primitive.code))
-        unusual = f"{local}.__class__ is not {array} or {local}.dtype is not {dtype}"
-        source.line(f"if {unusual}: {local} = {closer}({local})")
+        closer = source.constant("usual", array_coercer(primitive.dtype, primitive.code))
+        if "numpy" in sys.modules:
+            import numpy as np
+
+            dtype = source.constant("dtype", np.dtype(f"<{primitive.dtype}"))
+            array = source.constant("ndarray", np.ndarray)
+            unusual = f"{local}.__class__ is not {array} or {local}.dtype is not {dtype}"
+            source.line(f"if {unusual}: {local} = {closer}({local})")
+        else:  # so far there are no arrays: a node whose types have none starts without numpy
+            source.line(f"{local} = {closer}({local})")
         source.require(f"{local}.ndim == 1")
         if kind.container == "array":
             source.require(f"len({local}) == {kind.size}")

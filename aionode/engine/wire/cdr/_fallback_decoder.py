@@ -9,13 +9,14 @@ a corrupt length cannot make the result much larger than the data.
 from __future__ import annotations
 
 import struct
+from array import array
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from aionode.engine.wire._replaced_texts import REPLACED_TEXTS
-from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER, NOTHING
 from aionode.engine.wire.cdr._family import OWN, MessageFamily
-from aionode.engine.wire.cdr._layout import PRIMITIVES, minimum_size, padding
+from aionode.engine.wire.cdr._layout import PRIMITIVES, Primitive, minimum_size, padding
 from aionode.engine.wire.cdr._strings import repaired_wide_string, wide_string
 from aionode.errors import DecodeError
 from aionode.message import fields, type_name
@@ -131,12 +132,14 @@ class FallbackDecoder:
             return repaired_wide_string(data, self._order)
 
     def _array(self, kind: FieldType, count: int) -> Any:
-        import numpy as np
-
         primitive = PRIMITIVES[kind.kind]
         if count:
             self._align(primitive.size)
         data = self._take(primitive.size * count, f"{count} elements of {primitive.size} bytes")
+        if not self._family.has_arrays and kind.container != "array":
+            return self._numbers(data, primitive)
+        import numpy as np
+
         if kind.kind == "bool":
             array = np.frombuffer(data, np.uint8) != 0
         else:
@@ -145,6 +148,16 @@ class FallbackDecoder:
             array = array.astype(array.dtype.newbyteorder("="), copy=False)
         array.flags.writeable = False
         return array
+
+    def _numbers(self, data: memoryview, primitive: Primitive) -> memoryview:
+        """Return a memoryview of numbers in native byte order."""
+        if not data:
+            return NOTHING
+        if primitive.size == 1 or self._order == "<":
+            return data.cast(primitive.code)  # type: ignore[call-overload, no-any-return]  # as `_coerce` does
+        numbers = array(primitive.code, bytes(data))
+        numbers.byteswap()
+        return memoryview(numbers)
 
     def _count(self, what: str) -> int:
         self._align(COUNT_SIZE)

@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from aionode.message import Message
 
-__all__ = ["OWN", "MessageFamily"]
+__all__ = ["OWN", "PLAIN", "MessageFamily"]
 
 
 class MessageFamily(Struct, frozen=True, eq=False):
@@ -26,12 +26,15 @@ class MessageFamily(Struct, frozen=True, eq=False):
         adopt: Returns an object of the family as an aionode message. It is called for values in an
             unusual form; aionode's errors are raised for what aionode cannot encode either.
         prefix: The prefix of a field's name in the name of its attribute.
+        has_arrays: Whether sequences of numbers are decoded to arrays of numpy, and not to
+            memoryviews of their numbers.
     """
 
     class_of: Callable[[type[Message]], type[Any]]
     constructor: Callable[[type[Message]], Callable[..., Any]]
     adopt: Callable[[Any], Message]
     prefix: str = ""
+    has_arrays: bool = True
 
 
 def itself(value: Any) -> Any:
@@ -41,3 +44,6 @@ def itself(value: Any) -> Any:
 
 OWN: Final = MessageFamily(itself, itself, itself)
 """aionode's own classes."""
+
+PLAIN: Final = MessageFamily(itself, itself, itself, has_arrays=False)
+"""aionode's own classes, with memoryviews in place of the arrays of sequences."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from array import array
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +13,17 @@ from aionode.engine.wire import cdr
 from aionode.errors import MessageError
 from aionode.interfaces.geometry_msgs.msg import Pose2D, Vector3
 from aionode.interfaces.sensor_msgs.msg import LaserScan
-from aionode.message import Message, fields
+from aionode.message import Message, Sequence, fields, float64, int16, int64
+
+
+class Numbers(Message, typename="test_msgs/msg/Numbers", by_name=False):
+    """Sequences of numbers, each after a gap."""
+
+    flags: Sequence[bool]
+    small: Sequence[int16]
+    real: Sequence[float64]
+    none: Sequence[int64]
+
 
 TYPES: dict[type[Message], type[Any]] = {}
 
@@ -66,6 +77,23 @@ def test_objects_of_the_family_are_encoded() -> None:
 
     assert cdr.encoder(LaserScan, FAMILY)(made) == cdr.encode(own)
     assert b"".join(cdr.parts_encoder(LaserScan, FAMILY)(made)) == cdr.encode(own)
+
+
+@pytest.mark.parametrize(("order", "header"), [("<", b"\0\1\0\0"), (">", b"\0\0\0\0")])
+def test_sequences_of_numbers_are_memoryviews_for_a_family_without_arrays(
+    order: str, header: bytes
+) -> None:
+    """By either decoder, and as native numbers whatever the order of their bytes."""
+    numbers = struct.pack(f"{order}I2?2xI3h2xI2dI", 2, True, False, 3, -1, 2, 3, 2, 0.5, -2.0, 0)
+
+    made: Any = cdr.decoder(Numbers, cdr.PLAIN)(header + numbers)
+
+    assert [one.tolist() for one in (made.flags, made.small, made.real, made.none)] == [
+        [True, False],
+        [-1, 2, 3],
+        [0.5, -2.0],
+        [],
+    ]
 
 
 def test_an_array_of_python_is_encoded() -> None:

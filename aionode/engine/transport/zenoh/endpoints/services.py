@@ -196,7 +196,7 @@ class ZenohServer(Declaration):
     def _receive_from(self, query: zenoh.Query, sample_info: SampleInfo) -> None:
         payload = query.payload
         try:
-            message = cdr.decode(
+            message = cdr.decode_request(
                 self.srv_type.Request, b"" if payload is None else payload.to_bytes()
             )
         except DecodeError as error:
