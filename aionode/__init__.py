@@ -23,6 +23,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from aionode._process.imports import uncollected
+from aionode._version import __version__ as __version__
 
 if TYPE_CHECKING:
     from aionode.action import (
@@ -72,8 +73,6 @@ if TYPE_CHECKING:
     )
     from aionode.runner import freeze_objects, run
     from aionode.supervisor import Health, Supervisor
-
-__version__ = "0.1.0"
 
 __all__ = [
     "ActionClient",

@@ -1,8 +1,8 @@
 """Private names that cross a top-level folder of aionode: ``python -m tests.structure``.
 
 The first number that it prints is how many there are; a line for each follows: imports, and reads
-of another object's attributes. `_process`, `_distribution` and `_packages` are open to all of
-aionode. What a subclass reads of itself does not count: that is between it and its base.
+of another object's attributes. `_process`, `_distribution`, `_packages` and `_version` are open to
+all of aionode. What a subclass reads of itself does not count: that is between it and its base.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["crossings", "imports", "reads"]
 
 ROOT: Final = Path(__file__).parents[1] / "aionode"
 ROS_PACKAGES: Final = "ros_packages"
-OPEN: Final = frozenset({"_process", "_distribution", "_packages"})
+OPEN: Final = frozenset({"_process", "_distribution", "_packages", "_version"})
 
 GIVEN: Final = {
     "_make": "namedtuple's",

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from aionode import __version__
 from aionode._process.processor_waits import WAITS
+from aionode._version import __version__
 from aionode.clock import perf_ns, process_ns
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from aionode import __version__
+from aionode._version import __version__
 from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import until_disconnected
 from aionode.gateway.http.answers import (
