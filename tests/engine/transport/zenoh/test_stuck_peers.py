@@ -169,6 +169,11 @@ async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
             await until(all_is_read)
 
 
+def descriptor_of(one: socket.socket) -> tuple[int, int]:
+    """Return the numbers of a socket's descriptor and inode."""
+    return one.fileno(), os.fstat(one.fileno()).st_ino
+
+
 @pytest.fixture
 def full(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, socket.socket]]:
     """Return both ends of the only connection, whose second end has not read what was sent."""
@@ -180,8 +185,8 @@ def full(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, socke
         with suppress(BlockingIOError):
             while True:
                 sender.send(bytes(1 << 16))
-        descriptor = sender.fileno(), os.fstat(sender.fileno()).st_ino
-        monkeypatch.setattr(closing, "connections", lambda _: {descriptor: None})
+        found = {descriptor_of(sender): None}
+        monkeypatch.setattr(closing, "connections", lambda _: found)
         monkeypatch.setattr(closing, "unanswered", set)
         yield sender, receiver
 
@@ -195,7 +200,7 @@ async def test_a_close_waits_for_a_peer_only_until_it_reads(
     session: Any = None
 
     def read() -> None:
-        while closing.unsent_bytes(closing.connections(session)):
+        while closing.unsent_bytes([descriptor_of(sender)]):
             receiver.recv(1 << 16)
 
     async with asyncio.timeout(20):
