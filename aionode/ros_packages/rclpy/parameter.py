@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import array
 from enum import IntEnum
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterType, ParameterValue
@@ -15,6 +15,9 @@ from aionode._process.bounded_yaml import loaded_yaml
 from aionode.parameter import PARAMETER_SEPARATOR_STRING, parameter_value_to_python
 from rclpy._impl import messages as msg
 from rosidl_generator_py import from_aionode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = [
     "PARAMETER_SEPARATOR_STRING",
@@ -27,6 +30,8 @@ __all__ = [
     "parameter_dict_from_yaml_file",
     "parameter_value_to_python",
 ]
+
+WILDCARD = "/**"  # the section for every node
 
 AllowableParameterValue = Any
 AllowableParameterValueT = TypeVar("AllowableParameterValueT")
@@ -166,47 +171,47 @@ def parameter_dict_from_yaml_file(
         parameter_file: Path of the file.
         use_wildcard: Whether to include those of ``/**``.
         target_nodes: The nodes whose parameters to return; all by default.
-        namespace: Prefix of the names.
+        namespace: Prepended to the names as it is, so usually with a dot at its end.
 
     Raises:
         RuntimeError: the file is malformed, or has no parameters of these nodes.
     """
-    content = loaded_yaml(read_file(parameter_file))
-    keys = []
-    if use_wildcard and "/**" in content:
-        keys.append("/**")
-    if target_nodes:
-        keys += [key for name in target_nodes if (key := key_of(name, content)) is not None]
-    else:
-        keys += [key for key in content if key != "/**"]
-    if not keys:
+    sections = list(node_sections(loaded_yaml(read_file(parameter_file))))
+    wanted = {f"/{name.removeprefix('/')}" for name in target_nodes or ()}
+    chosen = [values for name, values in sections if use_wildcard and name == WILDCARD]
+    chosen += [
+        values for name, values in sections if (name in wanted if wanted else name != WILDCARD)
+    ]
+    parameters: dict[str, Any] = {}
+    for values in chosen:
+        parameters.update(messages_of(values, namespace))
+    if not parameters:
         raise RuntimeError("Param file does not contain any valid parameters")
-    values: dict[str, Any] = {}
-    for key in keys:
-        section = content[key]
-        if not isinstance(section, dict) or "ros__parameters" not in section:
-            raise RuntimeError(f"YAML file is not a valid ROS parameter file for node {key}")
-        values.update(section["ros__parameters"])
-    return messages_of(values, namespace)
+    return parameters
 
 
-def key_of(node_name: str, content: dict[str, Any]) -> str | None:
-    """Return the key of a node in a parameter file, with or without leading slash."""
-    absolute = f"/{node_name.removeprefix('/')}"
-    for key in (absolute, absolute.removeprefix("/")):
-        if key in content:
-            return key
-    return None
+def node_sections(content: Any, above: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the full name of each node in a parameter file, with its parameters.
+
+    Names may be without a leading slash, and sections of namespaces hold those of their nodes.
+    """
+    if not isinstance(content, dict):
+        return
+    for key, section in content.items():
+        name = f"{above}/{str(key).removeprefix('/')}"
+        if isinstance(section, dict) and isinstance(section.get("ros__parameters"), dict):
+            yield name, section["ros__parameters"]
+        else:
+            yield from node_sections(section, name)
 
 
 def messages_of(values: dict[str, Any], namespace: str = "") -> dict[str, Any]:
     """Return the parameters in nested dicts as messages, by their full names."""
     parameters: dict[str, Any] = {}
-    prefix = f"{namespace}{PARAMETER_SEPARATOR_STRING}" if namespace else ""
     for name, value in values.items():
-        full_name = prefix + name
+        full_name = f"{namespace}{name}"
         if isinstance(value, dict):
-            parameters.update(messages_of(value, full_name))
+            parameters.update(messages_of(value, full_name + PARAMETER_SEPARATOR_STRING))
         else:
             message = msg.Parameter(name=full_name)
             message.value = get_parameter_value(str(value))
