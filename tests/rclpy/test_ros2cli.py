@@ -191,6 +191,23 @@ def test_a_parameter_file_is_loaded(
     assert capsys.readouterr().out == "Set parameter speed successful\n"
 
 
+def test_of_a_parameter_file_only_the_section_of_the_node_is_loaded(
+    asking: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Files usually have those of several nodes."""
+    file = tmp_path / "params.yaml"
+    file.write_text(
+        "/a/other:\n  ros__parameters:\n    size: 1\n    speed: 7.0\n"
+        "/a/robot:\n  ros__parameters:\n    speed: 3.0\n"
+    )
+
+    ros2param.api.load_parameter_file(
+        node=asking, node_name="/a/robot", parameter_file=str(file), use_wildcard=False
+    )
+
+    assert capsys.readouterr().out == "Set parameter speed successful\n"
+
+
 def test_managed_nodes_are_asked_and_changed(asking: Any) -> None:
     """Several at a time, in dicts by the nodes' names."""
     api = ros2lifecycle.api

@@ -95,10 +95,7 @@ def load_parameter_file(
         RuntimeError: The node does not exist, or does not respond.
     """
     client = client_of(node, node_name)
-    names = [
-        parameter.name
-        for parameter in parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()
-    ]
+    names = parameter_dict_from_yaml_file(parameter_file, use_wildcard, [node_name])
     future = client.load_parameter_file(parameter_file, use_wildcard)
     for name, result in zip(names, answer_to(future, node, node_name).results, strict=True):
         how, stream = ("successful", sys.stdout) if result.successful else ("failed", sys.stderr)
