@@ -151,6 +151,16 @@ def test_a_content_filter_can_be_set_read_and_taken_away() -> None:
 
 
 @pytest.mark.usefixtures("initialised")
+def test_a_subscription_with_a_content_filter_that_cannot_be_used_is_refused() -> None:
+    """With the error of rclpy, as when a filter is set later."""
+    node = rclpy.create_node("filtering")
+    options = ContentFilterOptions("price > 3", [])
+
+    with pytest.raises(RCLError, match="price"):
+        node.create_subscription(String, "filtered", print, 10, content_filter_options=options)
+
+
+@pytest.mark.usefixtures("initialised")
 def test_a_content_filter_lets_malformed_messages_pass(caplog: pytest.LogCaptureFixture) -> None:
     """They are reported like those of any subscription; the transport continues."""
     node = rclpy.create_node("filtering")

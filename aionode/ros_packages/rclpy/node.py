@@ -456,6 +456,7 @@ class Node(ParameterMethods, GraphQueries):
         Raises:
             InvalidTopicNameException: the topic is invalid (a ValueError).
             RuntimeError: the callback takes other arguments.
+            RCLError: the content filter cannot be used.
             InvalidHandle: the node is destroyed.
         """
         profile = as_profile(qos_profile)

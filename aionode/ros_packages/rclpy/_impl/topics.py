@@ -281,7 +281,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         self.feed = self.inbox.feed
         self.assertions = self.inbox.assertions
         if content_filter_options is not None:
-            self._set_filter(
+            self.set_content_filter(
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
