@@ -38,6 +38,10 @@ class ClockChange(IntEnum):
     ROS_TIME_DEACTIVATED = 3
     SYSTEM_TIME_NO_CHANGE = 4
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``ClockChange.ROS_TIME_ACTIVATED``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 

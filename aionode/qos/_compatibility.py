@@ -117,6 +117,10 @@ class QoSCompatibility(IntEnum):
     WARNING = 1
     ERROR = 2
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``QoSCompatibility.OK``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile

@@ -891,3 +891,17 @@ def test_an_object_whose_method_waits_for_the_shutdown_is_not_kept() -> None:
     gc.collect()
 
     assert listener() is None
+
+
+@pytest.mark.parametrize(
+    ("member", "text"),
+    [
+        (rclpy.clock.ClockChange.ROS_TIME_ACTIVATED, "ClockChange.ROS_TIME_ACTIVATED"),
+        (rclpy.qos.QoSCompatibility.OK, "QoSCompatibility.OK"),
+        (rclpy.action.server.GoalEvent.SUCCEED, "GoalEvent.SUCCEED"),
+        (rclpy.signals.SignalHandlerOptions.ALL, "SignalHandlerOptions.ALL"),
+    ],
+)
+def test_what_rclpy_takes_from_its_extension_is_printed_by_name(member: Any, text: str) -> None:
+    """Python prints the number of an `IntEnum`; the extension's enumerations are none."""
+    assert f"{member}" == text

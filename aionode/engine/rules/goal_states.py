@@ -50,6 +50,10 @@ class GoalEvent(IntEnum):
     ABORT = 3
     CANCELED = 4
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``GoalEvent.SUCCEED``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 TRANSITIONS: dict[tuple[GoalStatus, GoalEvent], GoalStatus] = {
     (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,

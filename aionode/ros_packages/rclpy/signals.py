@@ -37,6 +37,10 @@ class SignalHandlerOptions(IntFlag):
     SIGTERM = 2
     ALL = 3
 
+    def __str__(self) -> str:
+        """Return the name, as rclpy does: ``SignalHandlerOptions.ALL``."""
+        return f"{type(self).__name__}.{self.name}"
+
 
 SIGNALS = {
     SignalHandlerOptions.SIGINT: signal.SIGINT,
