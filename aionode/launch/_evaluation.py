@@ -154,7 +154,7 @@ def module_in(path: str) -> Any:
     wrote = sys.dont_write_bytecode
     sys.dont_write_bytecode = True  # a launch file leaves no .pyc file behind
     try:
-        code = compile(text_of(path), str(path), "exec")
+        code = compile(text_of(path), str(path), "exec", dont_inherit=True)  # as Python compiles it
         with prefix_path():
             with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
     except Exception as error:

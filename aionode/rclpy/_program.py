@@ -141,7 +141,7 @@ def of_file(name: str) -> tuple[CodeType, ModuleType]:
     module = ModuleType("__main__")
     loader = SourceFileLoader("__main__", name)
     vars(module).update(__file__=name, __loader__=loader, __spec__=None, __builtins__=__builtins__)
-    code = compile(source, name, "exec")
+    code = compile(source, name, "exec", dont_inherit=True)  # as Python does
     if only_defines_main(source):
         fail(f"{name} defines main() and does not call it; --path FOLDER -m MODULE:main does")
     return code, module
@@ -191,7 +191,8 @@ def code_of_call(module: str, function: str) -> CodeType:
     if not all(part.isidentifier() for part in (*module.split("."), *function.split("."))):
         fail(f"{module}:{function} is not MODULE:FUNCTION")
     source = f"import sys\nfrom {module} import {function.partition('.')[0]}\n"
-    return compile(f"{source}sys.exit({function}())\n", f"{module}:{function}", "exec")
+    source += f"sys.exit({function}())\n"
+    return compile(source, f"{module}:{function}", "exec", dont_inherit=True)
 
 
 def no_module(name: str) -> str:

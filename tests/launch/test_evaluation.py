@@ -773,6 +773,16 @@ def test_what_a_group_does_later_keeps_what_the_group_has_set(files: Files) -> N
     assert [record["log"] for record in plan] == ["left"]
 
 
+def test_a_launch_file_defines_dataclasses(files: Files) -> None:
+    """Their annotations are objects, as Python evaluates them."""
+    plan = files.python(
+        "LogInfo(msg=str(fields(Robot)[0].type('7') + 1)),",
+        imports="from dataclasses import dataclass, fields\n@dataclass\nclass Robot:\n    x: int\n",
+    )
+
+    assert [record["log"] for record in plan] == ["8"]
+
+
 def test_a_launch_file_uses_functions_of_another_file(files: Files) -> None:
     """As in many robots; a failure in it is reported with its place."""
     lib = files.write("lib.py", "def text():\n    return 'from lib'\n")

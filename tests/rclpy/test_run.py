@@ -131,6 +131,17 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
     assert done.stderr == ""
 
 
+def test_annotations_of_a_program_are_objects(folder: Path) -> None:
+    """As Python evaluates them, unless the program imports `annotations` from `__future__`."""
+    (folder / "noted.py").write_text(
+        "import rclpy\ndef f(x: int): ...\nprint(f.__annotations__['x']('7') + 1)\n"
+    )
+
+    done = run(folder, "noted.py")
+
+    assert (done.stdout, done.stderr) == ("8\n", "")
+
+
 @pytest.mark.parametrize(
     "spin",
     [
