@@ -81,7 +81,7 @@ def main(argv: Sequence[str]) -> None:
     prepare(name)
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
-    sys.argv = [str(module.__file__), *arguments]
+    sys.argv = [str(module.__file__) if is_module else name, *arguments]
     sys.modules["__main__"] = module
     exec(code, vars(module))  # noqa: S102 (the program)
 
@@ -138,10 +138,11 @@ def of_file(name: str) -> tuple[CodeType, ModuleType]:
     except OSError as error:
         fail(f"can't open file {name!r}: {error.strerror}")
     sys.path[0] = str(path.resolve().parent)
+    file = str(path.absolute())  # as of Python 3.9
     module = ModuleType("__main__")
-    loader = SourceFileLoader("__main__", name)
-    vars(module).update(__file__=name, __loader__=loader, __spec__=None, __builtins__=__builtins__)
-    code = compile(source, name, "exec", dont_inherit=True)  # as Python does
+    loader = SourceFileLoader("__main__", file)
+    vars(module).update(__file__=file, __loader__=loader, __spec__=None, __builtins__=__builtins__)
+    code = compile(source, file, "exec", dont_inherit=True)  # as Python does
     if only_defines_main(source):
         fail(f"{name} defines main() and does not call it; --path FOLDER -m MODULE:main does")
     return code, module

@@ -42,9 +42,9 @@ SHADOW = "shadow"
 
 TRACEBACK = """\
 Traceback (most recent call last):
-  File "program.py", line 22, in <module>
+  File "{folder}/program.py", line 22, in <module>
     work(sys.argv[-1])
-  File "program.py", line 13, in work
+  File "{folder}/program.py", line 13, in work
     raise Failure("on purpose")
 Failure: on purpose
 """
@@ -121,12 +121,13 @@ def run(
     ],
 )
 def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: list[str]) -> None:
-    """Its name, its arguments, its neighbours and its exit status are its own."""
+    """Its name, its full path, its arguments, its neighbours and its exit status are its own."""
     done = run(folder, *command, "--ros-args", "exit", module=module)
 
     assert done.returncode == 7
     assert done.stdout == (
-        "__main__ program.py ['program.py', '--ros-args', 'exit'] std_msgs.msg.String(data='hi')\n"
+        f"__main__ {folder}/program.py ['program.py', '--ros-args', 'exit'] "
+        "std_msgs.msg.String(data='hi')\n"
     )
     assert done.stderr == ""
 
@@ -326,7 +327,7 @@ def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
 
     assert done.returncode == 1
     lines = [line for line in done.stderr.splitlines() if "^^" not in line]  # not in Python 3.13
-    assert lines == TRACEBACK.splitlines()
+    assert lines == TRACEBACK.format(folder=folder).splitlines()
 
 
 NAMES = """\
@@ -374,7 +375,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
     done = run(folder, "bad.py")
 
     assert done.returncode == 1
-    assert done.stderr.startswith('  File "bad.py", line 1\n')
+    assert done.stderr.startswith(f'  File "{folder}/bad.py", line 1\n')
 
 
 @pytest.mark.parametrize(
