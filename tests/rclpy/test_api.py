@@ -30,6 +30,8 @@ from rclpy._impl.topics import SubscriptionHandle
 from rclpy._impl.typesupport import service_support
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.clock import ROSClock
+from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.experimental.asyncio import AsyncNode
@@ -40,6 +42,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.task import Future
+from rclpy.time import Time
 from rclpy.waitable import Waitable
 from rosidl_generator_py import action_class, message_class, service_class
 from tests.support.fork_server import start
@@ -440,6 +443,64 @@ def test_a_wake_up_from_before_a_round_begins_no_second_one() -> None:
 
     assert executor.rounds == 1
     executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_timer_that_another_timer_resets_is_called_a_period_later() -> None:
+    """Although both were due when the round began."""
+    node = rclpy.create_node("watching")
+    clock = clock_at(0.0)
+    called: list[float] = []
+
+    def rearm() -> None:
+        watchdog.reset()
+
+    def bark() -> None:
+        called.append(clock.now().nanoseconds / 1e9)
+
+    node.create_timer(1.0, rearm, clock=clock)
+    watchdog = node.create_timer(1.0, bark, clock=clock)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    clock.set_ros_time_override(Time(seconds=1.5, clock_type=ClockType.ROS_TIME))
+
+    for _ in range(3):
+        executor.spin_once(timeout_sec=0)
+
+    assert called == []
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_timer_that_another_timer_cancels_takes_no_turn() -> None:
+    """The next spin calls the timer after it."""
+    node = rclpy.create_node("cancelling")
+    clock = clock_at(0.0)
+    called: list[str] = []
+
+    def cancel() -> None:
+        cancelled.cancel()
+
+    node.create_timer(1.0, cancel, clock=clock)
+    cancelled = node.create_timer(1.0, lambda: called.append("cancelled"), clock=clock)
+    node.create_timer(1.0, lambda: called.append("next"), clock=clock)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    clock.set_ros_time_override(Time(seconds=1.5, clock_type=ClockType.ROS_TIME))
+
+    for _ in range(2):
+        executor.spin_once(timeout_sec=0)
+
+    assert called == ["next"]
+    executor.shutdown()
+
+
+def clock_at(seconds: float) -> ROSClock:
+    """Return a clock that shows this time until another one is set."""
+    clock = ROSClock()
+    clock._set_ros_time_is_active(True)
+    clock.set_ros_time_override(Time(seconds=seconds, clock_type=ClockType.ROS_TIME))
+    return clock
 
 
 @pytest.mark.usefixtures("initialised")

@@ -29,6 +29,7 @@ __all__ = [
     "await_or_execute",
     "find_ready",
     "is_awaited",
+    "is_still_due",
     "wait_set_of",
 ]
 
@@ -80,6 +81,12 @@ def among(
         for entity in tuple(entities)
         if entity._handle.ready() and can_execute(entity)
     ]
+
+
+def is_still_due(call: Ready) -> bool:
+    """Return whether a timer that was ready when the round began is still due; others are."""
+    entity: Any = call[0]
+    return call[2] is not take_timer or bool(entity._handle.ready())
 
 
 def arrived(

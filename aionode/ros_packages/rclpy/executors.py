@@ -24,6 +24,7 @@ from rclpy._taking import (
     await_or_execute,
     find_ready,
     is_awaited,
+    is_still_due,
     wait_set_of,
 )
 from rclpy.task import Future, Task
@@ -387,8 +388,9 @@ class Executor:
             # Before the calls, which may take longer than the limit.
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for call in ready:
-                # A call of this round may have started another one, of the same group.
-                if call is ready[0] or self.can_execute(call[0]):
+                # A call of this round may have started another one, of the same group, or reset,
+                # cancelled or destroyed this timer.
+                if call is ready[0] or (self.can_execute(call[0]) and is_still_due(call)):
                     yielded = True
                     yield call
             if over:
