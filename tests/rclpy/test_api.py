@@ -125,6 +125,29 @@ def test_bytes_that_are_no_message_are_an_error_of_the_middleware() -> None:
 
 
 @pytest.mark.usefixtures("initialised")
+@pytest.mark.parametrize(("offered_s", "requested_s"), [(60, 3600), (3600, 60), (0, 60)])
+def test_the_shorter_lifespan_of_publisher_and_subscription_counts(
+    offered_s: int, requested_s: int
+) -> None:
+    """As with Fast DDS; 0 stands for no limit."""
+    node = rclpy.create_node("lifespans")
+    requested = QoSProfile(depth=10, lifespan=Duration(seconds=requested_s))
+    subscription = node.create_subscription(String, "lifespans", print, requested)
+    offered = QoSProfile(depth=1, lifespan=Duration(seconds=offered_s))
+    publisher = node.create_publisher(String, "lifespans", offered).handle.endpoint
+    data = SerializedMessage(serialize_message(String(data="here")))
+    now_ns = node.get_clock().now().nanoseconds
+
+    for number, age_s in enumerate((61, 1)):
+        sent_ns = now_ns - age_s * 10**9
+        subscription.handle.inbox.deliver(data, publisher.gid, number, sent_ns, arrived_ns=sent_ns)
+
+    taken = subscription.handle.take_message(String, raw=False)
+    assert taken is not None
+    assert taken[1]["publication_sequence_number"] == 1
+
+
+@pytest.mark.usefixtures("initialised")
 def test_a_content_filter_can_be_set_read_and_taken_away() -> None:
     """rmw_zenoh has no content filters: no other rclpy shows the results of their methods."""
     node = rclpy.create_node("filtering")

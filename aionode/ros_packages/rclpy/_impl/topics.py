@@ -343,7 +343,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         )
 
     def _has_expired(self, gid: bytes, source_ns: int, arrived_ns: int) -> bool:
-        """Return whether the lifespan that the publisher gave its messages has passed."""
+        """Return whether the lifespan of its publisher or of this subscription has passed."""
         lifespan_ns = self._lifespans.get(gid)
         if lifespan_ns is None:
             lifespan_ns = self.io.call(self._lifespan_of, gid)
@@ -353,10 +353,9 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         return expires_ns(source_ns, arrived_ns, lifespan_ns) <= now_ns()
 
     def _lifespan_of(self, gid: bytes) -> int:
-        for publisher in self.bare.matched():
-            if publisher.gid == gid and not is_unlimited(publisher.qos.lifespan):
-                return publisher.qos.lifespan.nanoseconds
-        return 0
+        limits = [each.qos.lifespan for each in self.bare.matched() if each.gid == gid]
+        limits.append(self.profile.lifespan)
+        return min((each.nanoseconds for each in limits if not is_unlimited(each)), default=0)
 
     def get_publisher_count(self) -> int:
         """Return how many publishers are matched."""
