@@ -344,9 +344,12 @@ class KindLoader(Loader):
         def names() -> list[str]:
             return [name for name in names_in(package) if name.split("/")[1] == kind]
 
+        def parts() -> set[str]:
+            return {part for name in names() for part in classes_of(name)}
+
         def find(name: str) -> Any:
             if name == "__all__":
-                return [name.rpartition("/")[2] for name in names()]
+                return sorted(parts())
             whole = f"{package}/{kind}/{name.partition('_')[0]}"
             classes = classes_of(whole) if whole in names() else {}
             if name not in classes:
@@ -355,8 +358,7 @@ class KindLoader(Loader):
             return classes[name]
 
         def listed() -> list[str]:
-            parts = {part for name in names() for part in classes_of(name)}
-            return sorted(parts.union(vars(module)))
+            return sorted(parts().union(vars(module)))
 
         vars(module).update(__getattr__=find, __dir__=listed)
 

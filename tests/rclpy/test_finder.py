@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -97,6 +98,15 @@ def test_the_parts_of_services_and_actions_are_there() -> None:
 
     assert service.SetBool_Request is service.SetBool.Request
     assert action.Fibonacci_Goal is action.Fibonacci.Goal
+
+
+@pytest.mark.usefixtures("installed")
+def test_an_import_of_everything_brings_the_parts_of_services() -> None:
+    """As of the modules that rosidl generates."""
+    names: dict[str, Any] = {}
+    exec("from std_srvs.srv import *", names)  # noqa: S102
+
+    assert names["SetBool_Request"] is names["SetBool"].Request
 
 
 @pytest.mark.usefixtures("installed")
