@@ -121,6 +121,16 @@ def test_a_message_shows_itself_as_in_ros() -> None:
     assert "ranges=[1.0, 2.0], intensities=[]" in str(scan)
 
 
+@pytest.mark.parametrize(
+    ("module", "text"), [("__main__", "Greeting(data='hi')"), ("a.b", "a.Greeting(data='hi')")]
+)
+def test_a_class_derived_from_a_message_is_shown_without_its_module(module: str, text: str) -> None:
+    """The classes of ROS are in private modules, which rosidl leaves out."""
+    greeting = type("Greeting", (message_class("std_msgs/msg/String"),), {"__module__": module})
+
+    assert repr(greeting(data="hi")) == text
+
+
 def test_constants_can_be_read_and_not_set() -> None:
     """They belong to the metaclass, as in rosidl, and instances have them, too."""
     transition = message_class("lifecycle_msgs/msg/Transition")

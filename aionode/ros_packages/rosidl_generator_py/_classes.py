@@ -298,7 +298,7 @@ def default_of(field: Field) -> Callable[[], Any]:
 def represented(self: Any) -> str:
     """Return a message as rosidl prints it: ``std_msgs.msg.String(data='hi')``."""
     cls = type(self)
-    name = f"{cls.__module__.rpartition('.')[0]}.{cls.__name__}"
+    name = ".".join([*cls.__module__.split(".")[:-1], cls.__name__])
     values = []
     for field, slot in zip(self.get_fields_and_field_types(), self.SLOT_TYPES, strict=True):
         value = getattr(self, field)
