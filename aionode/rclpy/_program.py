@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import sys
 from collections.abc import Iterator, Sequence
 from importlib.machinery import ModuleSpec, SourceFileLoader
@@ -141,7 +142,7 @@ def of_file(name: str) -> tuple[CodeType, ModuleType]:
     file = str(path.absolute())  # as of Python 3.9
     module = ModuleType("__main__")
     loader = SourceFileLoader("__main__", file)
-    vars(module).update(__file__=file, __loader__=loader, __spec__=None, __builtins__=__builtins__)
+    vars(module).update(__file__=file, __loader__=loader, __spec__=None, __builtins__=builtins)
     code = compile(source, file, "exec", dont_inherit=True)  # as Python does
     if only_defines_main(source):
         fail(f"{name} defines main() and does not call it; --path FOLDER -m MODULE:main does")
@@ -173,7 +174,7 @@ def of_module(name: str) -> tuple[CodeType, ModuleType]:
         __loader__=spec.loader,
         __spec__=spec,
         __package__=spec.parent,
-        __builtins__=__builtins__,
+        __builtins__=builtins,
     )
     return code, module
 

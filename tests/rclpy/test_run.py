@@ -132,6 +132,16 @@ def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: li
     assert done.stderr == ""
 
 
+@pytest.mark.parametrize("command", [("old.py",), ("-m", "old")])
+def test_the_builtins_of_a_program_are_a_module(folder: Path, command: tuple[str, ...]) -> None:
+    """In `__main__` alone, as in Python; programs look there for names of other versions."""
+    (folder / "old.py").write_text("import rclpy\nprint(hasattr(__builtins__, 'input'))\n")
+
+    done = run(folder, *command)
+
+    assert (done.stdout, done.stderr) == ("True\n", "")
+
+
 def test_annotations_of_a_program_are_objects(folder: Path) -> None:
     """As Python evaluates them, unless the program imports `annotations` from `__future__`."""
     (folder / "noted.py").write_text(
