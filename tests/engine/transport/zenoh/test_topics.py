@@ -676,3 +676,27 @@ async def test_subscriptions_start_no_threads() -> None:
             node.create_subscription(String, f"t{number}", None, 10)
             node.create_subscription(Image, f"i{number}", None, 10)
         assert threading.active_count() == before
+
+
+async def test_a_new_publisher_is_asked_for_its_history_only_by_existing_subscriptions() -> None:
+    """Those that were destroyed asked as well: the more of them, the longer it took."""
+    asked: list[str] = []
+    history = f"{CHATTER}/@adv/pub/{'1' * 16}/1/_"
+
+    def note(query: zenoh.Query) -> None:
+        if str(query.key_expr) == history:  # and not one for all publishers, as at first
+            asked.append(history)
+
+    async with Context() as context, quiet_node("node", context) as node:
+        with raw_session() as session:
+            session.declare_queryable(history, note)
+            for _ in range(10):
+                node.create_subscription(String, "/chatter", print, kept(1)).destroy()
+            node.create_subscription(String, "/chatter", print, kept(1))
+
+            with session.liveliness().declare_token(history):
+                await until(lambda: asked != [])
+            with session.liveliness().declare_token(history):
+                await until(lambda: len(asked) > 1)
+
+    assert asked == [history, history]

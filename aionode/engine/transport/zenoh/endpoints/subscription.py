@@ -14,6 +14,7 @@ from aionode.engine.transport.base import NOT_INLINE_NS, SampleInfo
 from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.reliability.limits import NEVER, OVERHEAD_BYTES
 from aionode.engine.transport.reliability.stateful_reader import StatefulReader
+from aionode.engine.transport.zenoh._defects.undeclared_subscribers import foreground
 from aionode.engine.transport.zenoh._session_state import Declaration
 from aionode.engine.transport.zenoh._target_numbers import TargetNumbers
 from aionode.engine.transport.zenoh.connections.handlers import direct
@@ -129,7 +130,7 @@ class ZenohReader(Declaration):
             subscriber: Any = ext.declare_advanced_subscriber(
                 session,
                 self._key,
-                put,
+                foreground(put),
                 allowed_origin=zenoh.Locality.REMOTE,
                 history=ext.HistoryConfig(
                     detect_late_publishers=True, max_samples=depth_of(self.endpoint.qos)
