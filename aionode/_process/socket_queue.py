@@ -1,14 +1,17 @@
-"""Counts the unacknowledged bytes in a socket."""
+"""Counts the bytes that wait in a socket."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     import socket
 
-__all__ = ["queued_bytes"]
+__all__ = ["queued_bytes", "unsent_bytes"]
+
+SIOCOUTQNSD: Final = 0x894B
+"""Asks a TCP socket of Linux for the bytes that it could not send yet: not those on their way."""
 
 
 def queued_bytes(one: socket.socket) -> int:
@@ -18,8 +21,25 @@ def queued_bytes(one: socket.socket) -> int:
         OSError: the socket is closed.
     """
     try:
-        import fcntl
         import termios
     except ImportError:  # Windows
         return 0
-    return int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
+    return asked(one, termios.TIOCOUTQ)
+
+
+def unsent_bytes(one: socket.socket) -> int:
+    """Return how many bytes of a TCP socket the other end has no room for yet; 0 if unknown.
+
+    Raises:
+        OSError: the socket is closed.
+    """
+    return asked(one, SIOCOUTQNSD) if sys.platform.startswith("linux") else 0
+
+
+def asked(one: socket.socket, question: int) -> int:
+    """Return the number with which the system answers a question about a socket."""
+    try:
+        import fcntl
+    except ImportError:
+        return 0
+    return int.from_bytes(fcntl.ioctl(one, question, bytes(4)), sys.byteorder)

@@ -200,7 +200,7 @@ async def test_a_close_waits_for_a_peer_only_until_it_reads(
     session: Any = None
 
     def read() -> None:
-        while closing.unsent_bytes([descriptor_of(sender)]):
+        while closing.with_unsent_bytes([descriptor_of(sender)]):
             receiver.recv(1 << 16)
 
     async with asyncio.timeout(20):

@@ -23,7 +23,7 @@ import sys
 import threading
 from typing import TYPE_CHECKING, Final
 
-from aionode._process.socket_queue import queued_bytes
+from aionode._process.socket_queue import queued_bytes, unsent_bytes
 from aionode.clock import perf_ns
 from aionode.engine.transport.zenoh._defects import _switch
 from aionode.engine.transport.zenoh._defects.lingering import stop_lingering
@@ -66,9 +66,6 @@ ESTABLISHED: Final = 1
 FIRST_BYTES: Final = 2048
 """Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""
 
-SIOCOUTQNSD: Final = 0x894B
-"""Asks a TCP socket of Linux how many bytes it could not send yet: not those on their way."""
-
 ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
 """SO_LINGER as Zenoh sets it."""
 
@@ -78,14 +75,9 @@ def is_mended() -> bool:
     return sys.platform.startswith("linux") and _switch.is_mended("closing")
 
 
-def unsent_bytes(those: Iterable[Descriptor]) -> dict[Descriptor, int]:
-    """Return the number of bytes that the system could not send yet, by socket, omitting zeros."""
-    import fcntl
-
-    unsent = {
-        descriptor: int.from_bytes(fcntl.ioctl(copy, SIOCOUTQNSD, bytes(4)), sys.byteorder)
-        for descriptor, copy in duplicates(those)
-    }
+def with_unsent_bytes(those: Iterable[Descriptor]) -> dict[Descriptor, int]:
+    """Return the number of bytes that could not be sent yet, by socket, omitting zeros."""
+    unsent = {descriptor: unsent_bytes(copy) for descriptor, copy in duplicates(those)}
     return {descriptor: size for descriptor, size in unsent.items() if size}
 
 
@@ -130,13 +122,13 @@ def cut_stuck(session: zenoh.Session) -> None:
         return
     own = connections(session)
     stop_lingering(own)
-    unsent, silent = unsent_bytes(own), unanswered()
+    unsent, silent = with_unsent_bytes(own), unanswered()
     ends_ns = perf_ns() + int(STUCK_S * 1e9)
     pause_s = FIRST_PAUSE_S
     while (unsent or silent) and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
         threading.Event().wait(min(pause_s, left_s))
         pause_s *= 2
-        still = unsent_bytes(unsent)
+        still = with_unsent_bytes(unsent)
         unsent = {each: size for each, size in unsent.items() if still.get(each, 0) >= size}
         silent = silent and silent & unanswered()
     cut({*unsent, *silent}, RESET)
