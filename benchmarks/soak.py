@@ -35,9 +35,11 @@ from aionode.errors import AionodeError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
+from aionode.qos import DurabilityPolicy, QoSProfile
 
 WARM_UP_SHARE: Final = 0.3
 TICK_SEC: Final = 0.01
+KEPT: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LARGE_BYTES: Final = 300_000
 GUESTS_AT_ONCE: Final = 2
 GUEST_SEC: Final = 1.0
@@ -165,6 +167,9 @@ class Soak:
             await self.invited.wait()
             async with Node("visitor", context=self.context) as visitor:
                 visitor.create_subscription(String, "/flood", lambda _msg: None, 5)
+                visitor.create_publisher(String, "/kept", KEPT)
+                visitor.create_subscription(String, "/kept", lambda _msg: None, KEPT)
+                visitor.create_action_client(Fibonacci, "/count")
                 visitor.create_timer(TICK_SEC, lambda: None)
                 await asyncio.sleep(0.05)
             self.nodes += 1
