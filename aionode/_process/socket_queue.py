@@ -28,13 +28,17 @@ def queued_bytes(one: socket.socket) -> int:
 
 
 def unsent_bytes(one: socket.socket) -> int:
-    """Return how many bytes of a TCP socket the other end has no room for yet; 0 if unknown."""
+    """Return how many bytes of a TCP socket the other end has no room for yet; 0 if unknown.
+
+    Raises:
+        OSError: the socket is closed.
+    """
     if not sys.platform.startswith("linux"):
         return 0
     try:
         return asked(one, SIOCOUTQNSD)
-    except OSError:  # it is closed, or a sandbox does not know the question
-        return 0
+    except OSError:  # a sandbox may not know this question
+        return queued_bytes(one)
 
 
 def asked(one: socket.socket, question: int) -> int:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import qos
 from aionode.engine.causes import Party
-from aionode.engine.membership import describe_endpoint, describe_node, join, register
+from aionode.engine.membership import describe_endpoint, describe_node, join, load_arrays, register
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.local import LocalWriter
 from aionode.errors import EntityDestroyedError, QueueFullError
@@ -341,6 +341,7 @@ class BareNode:
         Raises:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
+        load_arrays(srv_type)
         endpoint = self._describe(EndpointKind.SERVER, service, srv_type, profile)
         registrations = register(
             self.context, lambda transport: transport.create_server(endpoint, srv_type, serve)

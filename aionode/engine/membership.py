@@ -16,7 +16,7 @@ from aionode.engine.transport.base import Registration
 from aionode.engine.wire._liveliness import endpoint_token, gid_of
 from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
-from aionode.message import type_name
+from aionode.message import Message, holds_arrays, type_name, unserialized
 from aionode.qos import best_available_for_publisher, best_available_for_subscription
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ __all__ = [
     "describe_endpoint",
     "describe_node",
     "join",
+    "load_arrays",
     "nodes_of",
     "register",
     "release",
@@ -161,3 +162,14 @@ def describe_endpoint(
     )
     gid = gid_of(endpoint_token(context.network.domain_id, endpoint))
     return structs.replace(endpoint, gid=gid)
+
+
+def load_arrays(ros_type: Any) -> None:
+    """Import numpy if a message or service type has array fields, before a callback needs it.
+
+    A node's built-in services have such fields too, but do without it: see `cdr.decode_request`.
+    Types whose messages stay encoded need none.
+    """
+    halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
+    if any(unserialized(half) is half and holds_arrays(half) for half in halves):
+        import numpy  # noqa: F401, ICN001  # imported ahead of use

@@ -36,12 +36,12 @@ from aionode.engine.graph_queries import (
     actions_among,
     topic_endpoint_info,
 )
-from aionode.engine.membership import affinity_of, describe_endpoint
+from aionode.engine.membership import affinity_of, describe_endpoint, load_arrays
 from aionode.errors import InterfaceNotFoundError, brief, shortened
 from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.interfaces import fitting
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
-from aionode.message import ActionType, Message, ServiceType, holds_arrays
+from aionode.message import ActionType, Message, ServiceType
 from aionode.node import _builtin_services as builtin_services
 from aionode.node._own_graph import OwnGraph
 from aionode.node._time_source import TimeSource
@@ -1097,16 +1097,6 @@ def topic_endpoints(node: Node, kind: EndpointKind, topic_name: str) -> list[Top
     """Return the endpoints of a kind on a topic, whose name is resolved as in this node."""
     name = node.resolve_topic_name(topic_name)
     return [topic_endpoint_info(found) for found in node.graph.endpoints(kind, name=name)]
-
-
-def load_arrays(ros_type: Any) -> None:
-    """Import numpy if a type has array fields, so that no callback has to wait for the import.
-
-    The built-in services have such fields too, but do without it: see `cdr.decode_request`.
-    """
-    halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
-    if any(holds_arrays(half) for half in halves):
-        import numpy  # noqa: F401, ICN001  # imported ahead of use
 
 
 def expect_message_type(msg_type: object, subject: str) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import subprocess
+import sys
 import threading
 from typing import TYPE_CHECKING, Any
 
@@ -323,3 +325,28 @@ async def test_without_a_server_nothing_is_called(context: Context) -> None:
 
         assert (client.servers, call.open) == (0, 0)
         assert (answers.replies, answers.errors) == ([], [])
+
+
+LOADING = """
+import asyncio, sys
+from aionode.bare_node import BareNode
+from aionode.interfaces.rcl_interfaces.srv import SetParameters
+from aionode.message import serialized
+from aionode.qos import qos_profile_services_default as profile
+from aionode.testing import local_context
+
+async def main():
+    async with local_context() as context:
+        node = BareNode(context, "bare")
+        for kind, loaded in ((serialized(SetParameters), False), (SetParameters, True)):
+            node.create_server(kind, "/set", profile, print)
+            assert ("numpy" in sys.modules) is loaded
+
+asyncio.run(main())
+"""
+
+
+@pytest.mark.processes
+def test_numpy_is_there_before_a_request_needs_it() -> None:
+    """Without it, requests have memoryviews in place of arrays; encoded ones have neither."""
+    subprocess.run([sys.executable, "-c", LOADING], check=True)  # the text is here
