@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import TYPE_CHECKING
 
 from aionode._process.concurrency import checkpoint, running_loop
@@ -38,9 +38,7 @@ class ClockChange(IntEnum):
     ROS_TIME_DEACTIVATED = 3
     SYSTEM_TIME_NO_CHANGE = 4
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``ClockChange.ROS_TIME_ACTIVATED``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: ClockChange.ROS_TIME_ACTIVATED
 
 
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, overload
 
 from aionode.errors import brief
@@ -36,9 +36,7 @@ class ClockType(IntEnum):
     SYSTEM_TIME = 2
     STEADY_TIME = 3
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``ClockType.ROS_TIME``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: ClockType.ROS_TIME
 
 
 class Duration:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Any, TypeVar
 
 from msgspec import Struct
@@ -117,9 +117,7 @@ class QoSCompatibility(IntEnum):
     WARNING = 1
     ERROR = 2
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``QoSCompatibility.OK``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: QoSCompatibility.OK
 
 
 def qos_check_compatible(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import Enum, IntEnum
 
 from aionode.errors import GoalTransitionError
 
@@ -50,9 +50,7 @@ class GoalEvent(IntEnum):
     ABORT = 3
     CANCELED = 4
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``GoalEvent.SUCCEED``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: GoalEvent.SUCCEED
 
 
 TRANSITIONS: dict[tuple[GoalStatus, GoalEvent], GoalStatus] = {

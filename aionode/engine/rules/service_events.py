@@ -6,7 +6,7 @@ Both APIs use it: see `aionode.endpoints.service_introspection`.
 from __future__ import annotations
 
 import contextlib
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import QueueFullError, brief
@@ -45,9 +45,7 @@ class ServiceIntrospectionState(IntEnum):
     CONTENTS = 2
     """The metadata, and the request or response itself."""
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``ServiceIntrospectionState.OFF``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: ServiceIntrospectionState.OFF
 
 
 class Introspection:

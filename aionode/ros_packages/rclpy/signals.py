@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import weakref
 from contextlib import suppress
-from enum import IntFlag
+from enum import Enum, IntFlag
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -37,9 +37,7 @@ class SignalHandlerOptions(IntFlag):
     SIGTERM = 2
     ALL = 3
 
-    def __str__(self) -> str:
-        """Return the name, as rclpy does: ``SignalHandlerOptions.ALL``."""
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it: SignalHandlerOptions.ALL
 
 
 SIGNALS = {

@@ -6,7 +6,7 @@ take them like items of other waitables.
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import Enum, IntEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -106,8 +106,7 @@ class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its tex
     RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION = 256
     RMW_QOS_POLICY_AVOID_ROS_NAMESPACE_CONVENTIONS = 512
 
-    def __str__(self) -> str:
-        return f"{type(self).__name__}.{self.name}"
+    __str__ = Enum.__str__  # as rclpy prints it
 
 
 class Watch:
